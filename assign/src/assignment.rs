@@ -1,6 +1,6 @@
 //! The trait that every strategy implements.
 
-use crate::{AssignError, Frame, Gpu, LightLists, Needs, Passes, StrategyModule};
+use crate::{AssignError, Frame, Gpu, GroupShape, LightLists, Needs, Passes, StrategyModule};
 
 /// A strategy: groups of view samples, a function from a sample to its group, and a list of
 /// lights for each group.
@@ -61,6 +61,10 @@ pub struct Lookup<'a> {
     pub module: StrategyModule,
     /// Layout of the lists and of what the module reads.
     pub layout: &'a wgpu::BindGroupLayout,
+    /// The shape of the bounds that the module's `group_bounds(group: u32) -> GroupBounds` returns. `None` if it
+    /// has no such function, or if the bounds are not kept after culling. To call it, mount the shape with
+    /// [`Shader::group_bounds`](crate::Shader::group_bounds).
+    pub shape: Option<GroupShape>,
 }
 
 impl Lookup<'_> {

@@ -9,7 +9,6 @@ use crate::{
     LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
     Storage, StrategyModule, StrategyWesl,
     entries::{entry, storage_entry, texture, texture_entry},
-    light_reader::BOUNDS_BOX_WESL,
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
 
@@ -314,7 +313,9 @@ impl Culler {
 
     /// How shading finds a sample's group.
     pub fn lookup(&self) -> Lookup<'_> {
-        Lookup { module: self.module, layout: self.look_up.layout() }
+        // The lanes that cull a group find its bounds, and no buffer keeps them.
+        let shape = (!self.module.wesl().finds_bounds_by_lanes()).then_some(self.variant.shape);
+        Lookup { module: self.module, layout: self.look_up.layout(), shape }
     }
 
     /// The look-up's bind group; `None` before the first [`prepare`](Self::prepare).
@@ -342,13 +343,6 @@ impl Culler {
 }
 
 fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTraits) -> Shader<'a> {
-    let bounds = match variant.shape {
-        GroupShape::Frustum | GroupShape::MaskedFrustum => {
-            include_str!("shaders/bounds_frustum.wesl")
-        }
-        GroupShape::Box => BOUNDS_BOX_WESL,
-        GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
-    };
     let tests = variant.settings.tests;
     let is_hierarchy = variant.settings.source == LightSource::Hierarchy;
     let levels = if is_hierarchy { lights.levels } else { 0 };
@@ -357,18 +351,16 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .module("package::walk", include_str!("shaders/walk.wesl"))
         .module("package::tree", include_str!("shaders/tree.wesl"))
         .module("package::terms", include_str!("shaders/terms.wesl"))
-        .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
         .strategy(wesl)
+        .group_bounds(variant.shape)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
-        .flag("lane_bounds", false)
         .flag("bounds_by_lanes", wesl.finds_bounds_by_lanes())
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
         .flag("reflected", variant.facing == Facing::ReflectedCone)
         .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)
         .flag("gloss", variant.facing == Facing::HorizonAndGloss)
-        .flag("depth_mask", variant.shape == GroupShape::MaskedFrustum)
         .flag("hs", tests.hs)
         .flag("sat_e", tests.sat_e)
         .flag("sat_n", tests.sat_n)

@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
 use crate::{
-    AssignError, Gpu, LightKinds, LightReader, Storage, StrategyWesl, compiled::ModuleKey,
+    AssignError, Gpu, GroupShape, LightKinds, LightReader, Storage, StrategyWesl,
+    compiled::ModuleKey, light_reader::BOUNDS_BOX_WESL,
 };
 
 /// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
@@ -80,6 +81,25 @@ impl<'a> Shader<'a> {
         let modules = reader.modules().into_iter();
         let shader = modules.fold(self, |shader, (path, source)| shader.module(path, source));
         reader.flags().into_iter().fold(shader, |shader, (name, value)| shader.flag(name, value))
+    }
+
+    /// Mounts `package::bounds` for groups of a shape, so that the shader can call `group_bounds` of a strategy's
+    /// module ([`Lookup::shape`](crate::Lookup::shape)). No test of lights against bounds is compiled. Call it
+    /// after [`strategy`](Self::strategy).
+    pub fn group_bounds(self, shape: GroupShape) -> Self {
+        let bounds = match shape {
+            GroupShape::Frustum | GroupShape::MaskedFrustum => {
+                include_str!("shaders/bounds_frustum.wesl")
+            }
+            GroupShape::Box => BOUNDS_BOX_WESL,
+            GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
+        };
+        let tests = ["hs", "sat_e", "sat_n", "sat_p", "sat_v"];
+        let shader = self
+            .module("package::bounds", bounds)
+            .flag("lane_bounds", false)
+            .flag("depth_mask", shape == GroupShape::MaskedFrustum);
+        tests.into_iter().fold(shader, |shader, test| shader.flag(test, false))
     }
 
     /// Has each lane look lights up for itself. Call it after [`strategy`](Self::strategy) for fragment shaders:

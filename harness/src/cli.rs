@@ -10,6 +10,8 @@ mod cdi;
 mod compare;
 mod effect;
 mod error;
+mod explain;
+mod explain_command;
 mod fit_ltc;
 mod fold;
 mod headings;
@@ -19,6 +21,7 @@ mod named;
 mod names;
 mod parse;
 mod report;
+mod soak;
 mod stage;
 mod strategies;
 mod study;
@@ -33,6 +36,8 @@ pub use camera::{Camera, CameraPose};
 pub use cdi::CdiArgs;
 pub use compare::{CompareArgs, PicturesChoice, SourceChoice};
 pub use error::{BAD_INPUT, CliError};
+pub use explain::{ExplainArgs, Pixel};
+pub use explain_command::{Explained, explain_words};
 pub use fit_ltc::FitLtcArgs;
 pub use modes::Modes;
 pub use motion::{MotionArgs, MotionChoice, MovedBy};
@@ -40,6 +45,7 @@ pub use named::name_of;
 pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};
 pub use report::ReportArgs;
+pub use soak::SoakArgs;
 pub use stage::{LightBox, StageArgs};
 pub use strategies::ALL;
 pub use study::{Shard, StudyArgs};
@@ -97,10 +103,14 @@ pub enum Invocation {
     Study(StudyArgs),
     /// Write a report again, or join the shards of a study.
     Report(ReportArgs),
+    /// Explain a pixel.
+    Explain(ExplainArgs),
     /// Search for the best strategy and parameters.
     Advise(AdviseArgs),
     /// Fit linearly transformed cosines to the BRDF.
     FitLtc(FitLtcArgs),
+    /// Draw random frames and check each.
+    Soak(SoakArgs),
     /// Render what a view should look like.
     Truth(TruthArgs),
     /// Build deep images and cast rays through them.
@@ -140,6 +150,9 @@ enum Command {
     /// Compare strategies on one scene (the default command)
     #[command(long_about = LONG_ABOUT, after_help = MORE_OPTIONS, after_long_help = EXAMPLES)]
     Compare(CompareArgs),
+    /// Explain one pixel: its list, what each light adds, and lights that the list misses
+    #[command(after_help = MORE_OPTIONS, after_long_help = "")]
+    Explain(ExplainArgs),
     /// Find the strategy and parameters to use for a scene on this GPU
     #[command(after_help = MORE_OPTIONS, after_long_help = "")]
     Advise(AdviseArgs),
@@ -160,6 +173,8 @@ enum Command {
     /// Build the deep images of a scene, and compare rays through them with exact rays
     #[command(after_help = MORE_OPTIONS, after_long_help = "")]
     Cdi(CdiArgs),
+    /// Draw many random frames, and check the lists and the image of each
+    Soak(SoakArgs),
     /// Fit linearly transformed cosines to the BRDF, and compare them with those in use
     FitLtc(FitLtcArgs),
     /// List the names of strategies, engines, scenes, scenarios, adapters or studies

@@ -33,7 +33,7 @@ use crate::{
 };
 
 /// Frames on the clock along a path: on a GPU, and on a software adapter.
-const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
+pub(crate) const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames of lights that move before a still camera, likewise.
 const DEFAULT_MOVING_FRAMES: [u32; 2] = [240, 12];
 /// Frames before the clock, likewise.
@@ -95,9 +95,7 @@ pub fn compare_on(
         untested: None,
     };
     run.follow_path();
-    for RefusedStrategy { strategy, reason, .. } in &left_out {
-        run.results.warnings.push(format!("{strategy} was left out: {reason}"));
-    }
+    run.results.warnings.extend(left_out.iter().map(RefusedStrategy::words));
     run.results.refused.extend(left_out);
     run.warn(&choices);
     remove_stale(&args.out)?;
@@ -330,10 +328,13 @@ impl Run<'_> {
         self.pictures.extend(pictures.into_iter().flatten());
         bar.set_message(format!("times, {}", mode.name()));
         let exposure = reference.as_ref().map_or(1.0, |reference| reference.exposure);
-        let mut compared = |images: &[HdrImage], reference: &HdrImage| {
+        let mut compared = |frame: u32, images: &[HdrImage], reference: &HdrImage| {
             all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
                 let pair = ImagePair { image, reference, exposure };
-                if args.temporal { seen.follow(&pair) } else { seen.compare(&pair) }
+                match args.temporal {
+                    true => seen.follow(&pair, frame),
+                    false => seen.compare(&pair, Some(frame)),
+                }
             })
         };
         let tick = &mut || bar.inc(1);

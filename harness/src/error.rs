@@ -30,16 +30,19 @@ pub enum HarnessError {
     /// Writing to standard output failed.
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
+    /// What a soak found.
+    #[error("{0}")]
+    Finding(String),
     /// The results.
     #[error(transparent)]
     Results(#[from] ResultsError),
 }
 
 impl HarnessError {
-    /// 2 for bad input; 1 if the machine lacks something or failed.
+    /// 2 for bad input; 1 if the machine lacks something or failed, and for a finding.
     pub fn exit_code(&self) -> u8 {
         let is_machine_fault = match self {
-            Self::Output(_) => true,
+            Self::Output(_) | Self::Finding(_) => true,
             Self::Assign(error) | Self::Shading(ShadingError::Assign(error)) => {
                 is_device_fault(error)
             }

@@ -10,10 +10,12 @@ use harness::{
     compare::compare,
     deep_image_run::cdi,
     error::HarnessError,
+    explain::explain,
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
     scenarios,
+    soak::soak_alone,
     stored_report::report_stored,
     strategy::{self, engines},
     study::{studies, study},
@@ -49,6 +51,8 @@ fn run() -> Result<(), HarnessError> {
             studies().map(|(name, answers)| format!("{name:<16} {answers}\n")).collect()
         }
         Invocation::Compare(args) => compare(&args, command)?,
+        Invocation::Explain(args) => explain(&args)?,
+        Invocation::Soak(args) => soak_alone(&args)?,
         Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => report_stored(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
@@ -74,7 +78,10 @@ fn set_interrupt_message(invocation: &Invocation) {
         Invocation::Advise(args) => lost(&args.out),
         Invocation::Truth(args) => lost(&args.out),
         Invocation::Cdi(args) => lost(&args.out),
-        Invocation::Report(_) | Invocation::FitLtc(_) => "the same command starts again".into(),
+        Invocation::Report(_)
+        | Invocation::FitLtc(_)
+        | Invocation::Explain(_)
+        | Invocation::Soak(_) => "the same command starts again".into(),
         Invocation::List(_) | Invocation::Show(_) => return,
     });
 }

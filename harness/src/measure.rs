@@ -19,7 +19,7 @@ use crate::{
     moving::{Moving, known_lights, order_bytes},
     painter::Painter,
     pass_samples::PassSamples,
-    results::{Passes, Spans},
+    results::{MissedPair, Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
     strategy::Method,
@@ -39,6 +39,8 @@ pub struct ListsFigures {
     pub memory_bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
+    /// The first missed pair of the truth.
+    pub first_missed: Option<MissedPair>,
     /// How long the lists are that samples read; empty where the truth was not asked for.
     pub lengths: ListLengths,
     /// Light operations, where they were asked for.
@@ -75,8 +77,8 @@ pub struct Timetable<'a> {
     pub reference: Option<usize>,
 }
 
-/// Is handed the images of a frame, method by method, and that of no culling.
-pub type Compare<'a> = dyn FnMut(&[HdrImage], &HdrImage) -> Result<(), HarnessError> + 'a;
+/// Is handed a frame's number, its images, method by method, and that of no culling.
+pub type Compare<'a> = dyn FnMut(u32, &[HdrImage], &HdrImage) -> Result<(), HarnessError> + 'a;
 
 /// Which frames to draw.
 #[derive(Clone, Copy, Debug)]
@@ -297,7 +299,7 @@ pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrIm
 }
 
 /// Draws one frame and waits for it. Returns whether no list of the frame before overflowed.
-fn draw_unclocked(
+pub(crate) fn draw_unclocked(
     gpu: &Gpu,
     stage: &mut Stage,
     mode: Mode,
@@ -316,6 +318,18 @@ pub fn memory_bytes(stage: &Stage, strategy: &dyn Assignment, mode: Mode) -> u64
     let needs = strategy.needs();
     let order = if needs.hierarchy { order_bytes(&stage.lights) } else { 0 };
     strategy.memory_bytes() + order + stage.renderer.targets().bytes_for(mode, needs)
+}
+
+/// The place of a missed pair as results name it.
+fn place(stage: &Stage, pair: shading::MissedPair) -> MissedPair {
+    let width = stage.view.viewport.width;
+    // The GPU's order is known to the GPU only.
+    let given = |slot| stage.lights.given_index(slot).filter(|_| !stage.lights.order().is_on_gpu());
+    MissedPair {
+        pixel: [pair.pixel % width, pair.pixel / width],
+        light: pair.light,
+        given: pair.light.and_then(given),
+    }
 }
 
 /// Reads the lists of the last frame back and checks them; `seen` asks for light operations.
@@ -374,6 +388,7 @@ fn count(
         counters,
         bytes: strategy.lists().bytes(),
         memory_bytes: memory_bytes(stage, strategy, mode),
+        first_missed: truth.and_then(|truth| truth.first_missed).map(|pair| place(stage, pair)),
         truth,
         lengths,
         operations,

@@ -96,7 +96,7 @@ pub(crate) fn see(
     let exposure = reference.exposure;
     let pair = ImagePair { image: &image, reference: &reference.image, exposure };
     if !is_control {
-        seen.compare(&pair)?;
+        seen.compare(&pair, None)?;
         seen.unbounded_errors = match &reference.unbounded {
             Some(unbounded) if !is_same => errors(&ImagePair { reference: unbounded, ..pair }),
             _ => reference.unbounded_errors.clone(),

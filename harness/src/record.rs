@@ -12,7 +12,8 @@ use crate::{
     measure::{ListsFigures, Plan, Timed},
     moving::Moving,
     results::{
-        Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, mean,
+        Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, WorstPixel,
+        mean,
     },
     schedule::rounds,
     stage::Stage,
@@ -36,6 +37,7 @@ pub struct Seen {
     max_abs: f64,
     max_rel: f64,
     differing_channels: u64,
+    worst_pixel: Option<WorstPixel>,
     /// Errors against no culling, of each image that was compared.
     errors: Vec<(&'static str, Vec<f64>)>,
     /// How the error changes over frames that follow each other.
@@ -48,14 +50,24 @@ impl Seen {
         Self { lists, is_control, ..Self::default() }
     }
 
-    /// Compares an image with that of no culling.
-    pub fn compare(&mut self, pair: &ImagePair<'_>) -> Result<(), HarnessError> {
+    /// Compares an image of a frame with that of no culling; `None` is the still view.
+    pub fn compare(
+        &mut self,
+        pair: &ImagePair<'_>,
+        frame: Option<u32>,
+    ) -> Result<(), HarnessError> {
         if self.is_control {
             return Ok(());
         }
         let difference = pair.image.difference(pair.reference)?;
         self.compared = true;
         self.max_abs = self.max_abs.max(difference.max_abs);
+        if let Some(pixel) = difference.worst_pixel
+            && (self.worst_pixel.is_none() || difference.max_rel > self.max_rel)
+        {
+            let rel_diff = Some(difference.max_rel).filter(|rel| rel.is_finite());
+            self.worst_pixel = Some(WorstPixel { pixel, frame, rel_diff });
+        }
         self.max_rel = self.max_rel.max(difference.max_rel);
         self.differing_channels += difference.differing_channels;
         for (id, error) in errors(pair) {
@@ -68,8 +80,8 @@ impl Seen {
     }
 
     /// Compares the image of the next frame with that of no culling, and with the error of the frame before.
-    pub fn follow(&mut self, pair: &ImagePair<'_>) -> Result<(), HarnessError> {
-        self.compare(pair)?;
+    pub fn follow(&mut self, pair: &ImagePair<'_>, frame: u32) -> Result<(), HarnessError> {
+        self.compare(pair, Some(frame))?;
         if !self.is_control {
             self.follower.follow(pair);
         }
@@ -168,6 +180,7 @@ pub fn record(
             listed_per_sample: truth.map(|t| t.listed_per_sample()),
             contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
             missed_pairs: truth.map(|t| t.missed),
+            first_missed: lists.first_missed,
             checked_pairs: truth.map(|t| t.contributing),
             samples: truth.map_or(0, |t| t.samples),
             untested: None,
@@ -185,6 +198,7 @@ pub fn record(
             max_abs_diff: known(seen.max_abs),
             max_rel_diff: known(seen.max_rel),
             differing_channels: seen.compared.then_some(seen.differing_channels),
+            worst_pixel: seen.worst_pixel,
             tolerance: choice.tolerance(),
             files: images,
         },

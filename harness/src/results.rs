@@ -27,6 +27,7 @@ mod machine;
 mod metrics;
 mod operations;
 mod passes;
+mod places;
 mod planes;
 mod record;
 mod renamed;
@@ -52,6 +53,7 @@ pub use lists::ListFigures;
 pub use machine::{DeviceType, Machine};
 pub use operations::{EvaluatedTerms, Operations};
 pub use passes::{PassKind, PassTimes, Passes, Spans};
+pub use places::{MissedPair, WorstPixel};
 pub use planes::{PlaneSource, Planes};
 pub use record::Record;
 pub(crate) use seal::{sealed, unsealed};
@@ -137,6 +139,13 @@ pub struct RefusedStrategy {
     pub mode: Option<Mode>,
     /// Why, in words.
     pub reason: String,
+}
+
+impl RefusedStrategy {
+    /// The sentence that it was left out, and why.
+    pub fn words(&self) -> String {
+        format!("{} was left out: {}", self.strategy, self.reason)
+    }
 }
 
 /// The clock that took the times of a record.

@@ -2,7 +2,7 @@
 
 use assign::{Gpu, LightBuffer, LightKind, RejectedLight, Suns, View};
 use glam::DVec3;
-use scenes::{Aabb, Dielectric, Scene, primary_light};
+use scenes::{Aabb, Dielectric, Pose, Scene, primary_light};
 use shading::{AreaModel, Renderer};
 
 use crate::{
@@ -206,6 +206,14 @@ impl Stage {
         }
         self.move_lights(frame)?;
         self.prepare()
+    }
+
+    /// Puts the camera at a pose, which the next [`go_to`](Self::go_to) or [`prepare`](Self::prepare) uploads. The
+    /// planes stay, so surfaces may be cut away.
+    pub fn stand_at(&mut self, pose: Pose) {
+        let size = [self.view.viewport.width, self.view.viewport.height];
+        self.walks = false;
+        self.view = self.optics.view(&self.scene, pose, size);
     }
 
     /// Moves the near plane in front of every surface in the view and in `count` poses of the path, unless an

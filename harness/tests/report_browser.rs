@@ -126,6 +126,28 @@ fn a_button_chooses_a_panel() {
 }
 
 #[test]
+fn the_pixel_under_the_pointer_is_explained() {
+    let results = typical();
+    let page = render_html(&results, &pictures(&results));
+    let Some(before) = dump(&page, 1200) else { return };
+    assert!(body(&before).contains("Point at a pixel of a picture"));
+    // To a quarter of the width and three quarters of the height.
+    let point = "<script>
+for (const picture of document.querySelectorAll('[data-explain]')) {
+  const box = picture.getBoundingClientRect();
+  const at = { bubbles: true, clientX: box.left + box.width / 4, clientY: box.top + box.height * 3 / 4 };
+  picture.dispatchEvent(new PointerEvent('pointermove', at));
+}
+</script></body>";
+    let after = dump(&page.replace("</body>", point), 1200).expect("the browser is there");
+    let record = &results.records[1];
+    let [x, y] = [record.setting.width / 4, record.setting.height * 3 / 4];
+    let expected = format!("--strategies {} --pixel {x},{y}</p>", record.strategy);
+    assert!(body(&after).contains(&expected), "{expected}");
+    assert!(!html_tag(&after).contains("data-error"), "{}", html_tag(&after));
+}
+
+#[test]
 fn a_failing_script_is_noticed() {
     let page = render_html(&typical(), &[]);
     let planted = "<script>throw new Error('planted')</script></body>";

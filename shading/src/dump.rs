@@ -74,6 +74,26 @@ pub fn visit_lists(
     Ok(())
 }
 
+/// The entries that the look-up of one pixel returns, in its order, whatever the strategy stores; empty if the pixel
+/// shows no surface. Blocks.
+///
+/// `pixel` is an index into the viewport, rows from the top; [`visit_lists`] says what else matters.
+///
+/// # Errors
+///
+/// As [`visit_lists`].
+pub fn list_of_pixel(
+    renderer: &Renderer,
+    strategy: &dyn Assignment,
+    frame: &Frame<'_>,
+    pixel: u32,
+    is_forward: bool,
+) -> Result<Vec<u32>, ShadingError> {
+    let dump = Dump { renderer, strategy, frame, is_forward };
+    let counts = dump.counts()?;
+    dump.entries(&counts, &[pixel])
+}
+
 /// One frame's look-ups.
 struct Dump<'a> {
     renderer: &'a Renderer,
@@ -140,6 +160,7 @@ impl Dump<'_> {
             ],
             strategy: Some(strategy),
             is_alone: is_forward,
+            bounds: None,
         };
         pass.submit(renderer, frame.view.viewport)?;
         Ok((

@@ -25,6 +25,9 @@ pub struct ImageDifference {
     pub max_abs: f64,
     /// Greatest `|a - b| / max(|b|, 1e-6)`.
     pub max_rel: f64,
+    /// The pixel of a channel with [`max_rel`](Self::max_rel), the first of several: x from the left, y from the
+    /// top. `None` if no channel differs.
+    pub worst_pixel: Option<[u32; 2]>,
     /// The number of channels whose bits differ, or that are NaN in either image.
     pub differing_channels: u64,
 }
@@ -83,7 +86,7 @@ impl HdrImage {
         }
         let mut difference = ImageDifference::default();
         let channels = self.pixels.iter().flatten().zip(reference.pixels.iter().flatten());
-        for (&a, &b) in channels {
+        for (ix, (&a, &b)) in channels.enumerate() {
             if a.to_bits() == b.to_bits() && !a.is_nan() {
                 continue;
             }
@@ -91,7 +94,14 @@ impl HdrImage {
             let off = (f64::from(a) - f64::from(b)).abs();
             let off = if a.is_finite() && b.is_finite() { off } else { f64::INFINITY };
             difference.max_abs = difference.max_abs.max(off);
-            difference.max_rel = difference.max_rel.max(off / f64::from(b).abs().max(1e-6));
+            let rel = off / f64::from(b).abs().max(1e-6);
+            // What is not finite counts as infinitely far off.
+            let rel = if rel.is_finite() { rel } else { f64::INFINITY };
+            if difference.worst_pixel.is_none() || rel > difference.max_rel {
+                let pixel = (ix / 3) as u32;
+                difference.worst_pixel = Some([pixel % self.width, pixel / self.width]);
+                difference.max_rel = rel;
+            }
         }
         Ok(difference)
     }
@@ -220,6 +230,21 @@ mod tests {
         let difference = image.difference(&grey(0.5)).unwrap();
         assert_eq!(difference.differing_channels, 1);
         assert!(difference.max_abs > 0.0 && difference.max_abs < 1e-6);
+        assert_eq!(difference.worst_pixel, Some([1, 1]));
+    }
+
+    #[test]
+    fn the_worst_pixel_is_the_first_of_those_that_are_farthest_off() {
+        let mut image = grey(0.5);
+        image.pixels[0] = [0.4, 0.5, 0.5];
+        image.pixels[2] = [0.5, 0.5, f32::NAN];
+        image.pixels[3] = [f32::INFINITY; 3];
+        let difference = image.difference(&grey(0.5)).unwrap();
+        assert_eq!((difference.worst_pixel, difference.max_rel), (Some([0, 1]), f64::INFINITY));
+        image.pixels[2] = [0.5; 3];
+        image.pixels[3] = [0.5, 0.5, 0.51];
+        let difference = image.difference(&grey(0.5)).unwrap();
+        assert_eq!(difference.worst_pixel, Some([0, 0]));
     }
 
     #[test]

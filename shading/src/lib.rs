@@ -20,6 +20,7 @@
 //! bit. [`traced`] renders the true image, including shadows and bounces.
 
 mod area_model;
+mod contributions;
 mod dump;
 mod error;
 mod gbuffer_inputs;
@@ -36,6 +37,7 @@ mod mips;
 mod mode;
 mod moving_lights;
 mod operations;
+mod pixel_group;
 mod pixel_pass;
 mod probe;
 mod raster;
@@ -50,7 +52,8 @@ mod truth;
 mod world_triangles;
 
 pub use area_model::{ACCEPTED_AREA_MODELS, AreaModel, MAX_AREA_SAMPLES};
-pub use dump::visit_lists;
+pub use contributions::{PixelLight, PixelSurface, light_pixel};
+pub use dump::{list_of_pixel, visit_lists};
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
@@ -62,11 +65,12 @@ pub use materials::MaterialRecord;
 pub use mode::Mode;
 pub use moving_lights::MovingLights;
 pub use operations::{Operations, Terms, count_operations};
+pub use pixel_group::{GroupVolume, PixelGroup, PixelGroupsRecord, groups_of_pixel};
 pub use probe::{Samples, probe, record_for_probe};
 pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
 pub use renderer::{Renderer, record_before_lighting};
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use targets::Targets;
-pub use truth::{EDGE, LightBvh, ListsTruth};
+pub use truth::{EDGE, LightBvh, ListsTruth, MissedPair, is_missed};
 pub use world_triangles::WorldTriangles;

@@ -102,6 +102,7 @@ pub fn count_operations(
         resources,
         strategy: Some(strategy),
         is_alone: false,
+        bounds: None,
     };
     pass.submit(renderer, viewport)?;
     let counts: Vec<[[u32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);

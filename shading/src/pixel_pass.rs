@@ -1,6 +1,6 @@
 //! Runs a compute pass with one thread per pixel at once: probe, light operations, surfaces.
 
-use assign::{AssignError, Assignment, EncoderPasses, Passes, Shader, Viewport};
+use assign::{AssignError, Assignment, EncoderPasses, GroupShape, Passes, Shader, Viewport};
 
 use crate::{
     Renderer,
@@ -23,6 +23,8 @@ pub(crate) struct PixelPass<'a> {
     pub(crate) strategy: Option<&'a dyn Assignment>,
     /// Whether each lane looks lights up for itself, as in fragment shaders.
     pub(crate) is_alone: bool,
+    /// The shape of the strategy's bounds, if the shader calls its `group_bounds`.
+    pub(crate) bounds: Option<GroupShape>,
 }
 
 impl PixelPass<'_> {
@@ -45,6 +47,9 @@ impl PixelPass<'_> {
             shader = shader.strategy(lookup.module);
             if self.is_alone {
                 shader = shader.without_subgroups();
+            }
+            if let Some(shape) = self.bounds {
+                shader = shader.group_bounds(shape);
             }
         }
         let module = shader.create(gpu, &format!("package::{}", self.name))?;

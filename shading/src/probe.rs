@@ -67,6 +67,7 @@ pub fn probe(
         resources: vec![entry(SEEN_BINDING, &seen), entry(GROUPS_BINDING, &groups)],
         strategy: Some(strategy),
         is_alone: false,
+        bounds: None,
     };
     pass.submit(renderer, frame.view.viewport)?;
     let seen: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&seen, pixels * 32)?);

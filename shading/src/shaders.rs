@@ -45,6 +45,11 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "metallic_roughness_texture",
         "normal_texture",
         "emissive_texture",
+        "frustum_bounds",
+        "masked_bounds",
+        "box_bounds",
+        "oriented_bounds",
+        "second_group",
     ];
     let shader = Shader::new(lists_group)
         .module("package::brdf", include_str!("shaders/brdf.wesl"))
@@ -70,6 +75,8 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::operations", include_str!("shaders/operations.wesl"))
         .module("package::probe", include_str!("shaders/probe.wesl"))
         .module("package::dump", include_str!("shaders/dump.wesl"))
+        .module("package::pixel_group", include_str!("shaders/pixel_group.wesl"))
+        .module("package::contributions", include_str!("shaders/contributions.wesl"))
         .module("package::surfaces", include_str!("shaders/surfaces.wesl"))
         .module("package::raster_spheres", include_str!("shaders/raster_spheres.wesl"));
     flags.into_iter().fold(shader, |shader, flag| shader.flag(flag, false))

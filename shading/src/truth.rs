@@ -32,6 +32,29 @@ pub struct ListsTruth {
     /// contributing term; and samples without a position. For a strategy that knows normals, only
     /// lights above the sample's horizon count.
     pub missed: u64,
+    /// The first of the missed pairs, by pixel and then by light.
+    pub first_missed: Option<MissedPair>,
+}
+
+/// A light that reaches a sample and is missing from the list that the sample reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MissedPair {
+    /// The pixel of the sample: an index into the viewport, rows from the top.
+    pub pixel: u32,
+    /// The light's slot in its buffer; `None` for a sample whose position is not a number.
+    pub light: Option<u32>,
+}
+
+/// Whether a list misses a light at a sample: the light reaches the sample, and the list lacks it or the flag of a
+/// term that reaches. `listed` are the flags of the light's entry, 0 without an entry. A pair closer to the
+/// [`EDGE`] than that share does not count. `normal` is the sample's, for strategies that know normals: their
+/// lists need no light below the sample's horizon.
+pub fn is_missed(light: &Light, listed: u32, point: DVec3, normal: Option<DVec3>) -> bool {
+    let diffuse = light.diffuse_reach(point) > EDGE;
+    let needed = ENTRY_SPECULAR | if diffuse { ENTRY_DIFFUSE } else { 0 };
+    light.reach(point) > EDGE
+        && needed & !listed != 0
+        && normal.is_none_or(|normal| light.above_horizon(point, normal) > EDGE)
 }
 
 impl ListsTruth {
@@ -45,6 +68,12 @@ impl ListsTruth {
         self.listed as f64 / self.samples.max(1) as f64
     }
 
+    /// Counts a missed pair.
+    fn miss(&mut self, pair: MissedPair) {
+        self.missed += 1;
+        self.first_missed = Some(self.first_missed.map_or(pair, |first| first.min(pair)));
+    }
+
     /// The check of the samples of both.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
@@ -53,6 +82,7 @@ impl ListsTruth {
             contributing: self.contributing + other.contributing,
             listed: self.listed + other.listed,
             missed: self.missed + other.missed,
+            first_missed: [self.first_missed, other.first_missed].into_iter().flatten().min(),
         }
     }
 }
@@ -145,23 +175,22 @@ impl<'a> LightBvh<'a> {
             truth.samples += run.len() as u64;
             truth.listed += run.len() as u64 * entries.len() as u64;
             for &sample in run {
+                let pixel = samples.pixels[sample as usize];
                 // No light reaches or lights a position that is not a number.
                 if !samples.positions[sample as usize].iter().all(|x| x.is_finite()) {
-                    truth.missed += 1;
+                    truth.miss(MissedPair { pixel, light: None });
                     continue;
                 }
                 let [point, normal] = [&samples.positions, &samples.normals]
                     .map(|of| DVec3::from(of[sample as usize].map(f64::from)));
-                self.lights_at(samples.positions[sample as usize], |light_ix, reach| {
+                let normal = knows_normals.then_some(normal);
+                self.lights_at(samples.positions[sample as usize], |light_ix, _| {
                     truth.contributing += 1;
-                    let light = &self.lights[light_ix as usize];
                     let (run, terms) = listed_in[light_ix as usize];
                     let listed = if run == run_ix as u32 { terms } else { 0 };
-                    let diffuse = light.diffuse_reach(point) > EDGE;
-                    let needed = ENTRY_SPECULAR | if diffuse { ENTRY_DIFFUSE } else { 0 };
-                    let lacks = reach > EDGE && needed & !listed != 0;
-                    let lit = || !knows_normals || light.above_horizon(point, normal) > EDGE;
-                    truth.missed += u64::from(lacks && lit());
+                    if is_missed(&self.lights[light_ix as usize], listed, point, normal) {
+                        truth.miss(MissedPair { pixel, light: Some(light_ix) });
+                    }
                 });
             }
         }
@@ -211,7 +240,9 @@ mod tests {
         let bvh = LightBvh::new(&lights);
         // Lights 0 and 1 reach sample 0; lights 4, 5 and 6 reach sample 1; none reaches sample 2.
         let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
-        assert_eq!(truth, ListsTruth { samples: 3, contributing: 5, listed: 4 + 4 + 2, missed: 0 });
+        let listed = 4 + 4 + 2;
+        let expected = ListsTruth { samples: 3, contributing: 5, listed, ..ListsTruth::default() };
+        assert_eq!(truth, expected);
     }
 
     #[test]
@@ -220,6 +251,11 @@ mod tests {
         let bvh = LightBvh::new(&lights);
         let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[0, 1]]), false);
         assert_eq!(truth.missed, 1);
+        assert_eq!(truth.first_missed, Some(MissedPair { pixel: 1, light: Some(5) }));
+        // Of several pairs, the first by pixel and then by light.
+        let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[]]), false);
+        assert_eq!(truth.missed, 3);
+        assert_eq!(truth.first_missed, Some(MissedPair { pixel: 0, light: Some(0) }));
     }
 
     #[test]
@@ -251,6 +287,7 @@ mod tests {
         let truth =
             LightBvh::new(&lights).check(&samples, &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
         assert_eq!(truth.missed, 1);
+        assert_eq!(truth.first_missed, Some(MissedPair { pixel: 2, light: None }));
     }
 
     #[test]

@@ -7,7 +7,10 @@ use assign::{
     conformance::{LinkedModule, StructLayout},
     struct_layout,
 };
-use shading::{InstanceRecord, LightingRecord, MaterialRecord, SunRecord, SunsRecord};
+use shading::{
+    InstanceRecord, LightingRecord, MaterialRecord, PixelGroupsRecord, PixelSurface, SunRecord,
+    SunsRecord,
+};
 
 /// A shader that reads instances and materials.
 fn geometry() -> LinkedModule {
@@ -59,4 +62,18 @@ fn suns() {
     assert_eq!(lighting().layout_of("Suns"), rust, "WESL, then Rust");
     let rust = struct_layout!(SunRecord: to_sun, irradiance);
     assert_eq!(lighting().layout_of("Sun"), rust, "WESL, then Rust");
+}
+
+#[test]
+fn records_of_one_pixel() {
+    let look_up = include_str!("../../assign/src/shaders/everything.wesl");
+    let shader = shading::lighting_shader().module("package::strategy", look_up);
+    let linked = |root: &str| LinkedModule::new(root, &shader.link(root).unwrap());
+    let rust = struct_layout!(PixelGroupsRecord: is_surface, group, second, depth_mask, bounds);
+    let wesl = linked("package::pixel_group").layout_of("PixelGroups");
+    assert_eq!(wesl, rust, "WESL, then Rust");
+    let rust = struct_layout!(PixelSurface: position_world, normal_roughness, base_color, dielectric,
+        emission, from_suns);
+    let wesl = linked("package::contributions").layout_of("PixelSurface");
+    assert_eq!(wesl, rust, "WESL, then Rust");
 }

@@ -202,6 +202,7 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
     let entry_point = match root {
         "deferred" => "shade",
         "operations" => "count_operations",
+        "pixel_group" => "find_groups",
         _ => root,
     };
     assert_eq!(linked.entry_points, [entry_point.to_owned()].into(), "{root} {flags:?}");
@@ -258,6 +259,34 @@ fn probe() {
         check_compute("probe", &Flags::new(), look_up, &group_only, &[0, 2, 8, 9]);
         let model_ids = ["model_ids"].into();
         check_compute("probe", &model_ids, look_up, &group_only, &[0, 2, 5, 8, 9]);
+    }
+}
+
+#[test]
+fn pixel_group() {
+    for look_up in LOOK_UPS {
+        // It computes the group and reads no list.
+        let group_only: Vec<u32> =
+            look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
+        check_compute("pixel_group", &Flags::new(), look_up, &group_only, &[0, 2, 8, 9]);
+        let model_ids = ["model_ids"].into();
+        check_compute("pixel_group", &model_ids, look_up, &group_only, &[0, 2, 5, 8, 9]);
+    }
+}
+
+#[test]
+fn contributions() {
+    let always = [0, 1, 2, 6, 8, 9, 12, 13];
+    for flags in with_suns(with_areas(subsets(&["emissive", "dielectrics", "spots", "hard_cut"]))) {
+        let linked = link("package::contributions", &flags, None);
+        assert_eq!(linked.entry_points, ["evaluate".to_owned()].into(), "{flags:?}");
+        let more = [
+            (3, flags.contains("emissive")),
+            (7, flags.contains("area_ltc_table")),
+            (10, flags.contains("suns")),
+            (11, flags.contains("dielectrics")),
+        ];
+        linked.check_pixels(&always, &more);
     }
 }
 

@@ -139,7 +139,7 @@ impl CompareArgs {
     }
 }
 
-const CUTS: [(Cut, &str); 3] = [
+pub(super) const CUTS: [(Cut, &str); 3] = [
     (Cut::Windowed, "Smoothly: times (1 - (distance / range)^4)^2"),
     (Cut::Hard, "At once: inverse square up to the range, 0 beyond it"),
     (Cut::Never, "Not at all, though lists end there: all that cull fail, on purpose"),

@@ -5,7 +5,7 @@
 
 use clap::{ArgMatches, parser::ValueSource};
 
-use super::{CdiArgs, CliError, Invocation, RangeChoice, StageArgs, StudyArgs};
+use super::{CdiArgs, CliError, ExplainArgs, Invocation, RangeChoice, StageArgs, StudyArgs};
 
 /// Options, when they have an effect, and what they need.
 struct Rule<A> {
@@ -79,6 +79,15 @@ const STAGE: &[Rule<StageArgs>] = &[
     },
 ];
 
+const EXPLAIN: &[Rule<ExplainArgs>] = &[
+    Rule { options: &["frames"], has_effect: |args| args.path, needs: "--path" },
+    Rule {
+        options: &["frame"],
+        has_effect: |args| args.path || args.stage.motion.motion.is_some(),
+        needs: "--path or --motion LAW, because all frames are the same",
+    },
+];
+
 const CDI: &[Rule<CdiArgs>] = &[Rule {
     options: &["rays"],
     has_effect: |args| !args.casts.0.is_empty() || args.compared > 0,
@@ -94,6 +103,10 @@ pub(super) fn check(asked: &Invocation, matches: &ArgMatches) -> Result<(), CliE
     let matches = matches.subcommand().map_or(matches, |(_, options)| options);
     match asked {
         Invocation::Compare(args) => check_rules(STAGE, &args.stage, matches),
+        Invocation::Explain(args) => {
+            check_rules(EXPLAIN, args, matches)?;
+            check_rules(STAGE, &args.stage, matches)
+        }
         Invocation::Advise(args) => check_rules(STAGE, &args.stage, matches),
         Invocation::Truth(args) => check_rules(STAGE, &args.stage, matches),
         Invocation::Study(args) => check_rules(STUDY, args, matches),

@@ -122,6 +122,9 @@ fn missing(option: &str, program: &clap::Command) -> String {
         }
     }
     match option {
+        "--pixel" => {
+            "explain needs --pixel X,Y: a pixel of the image, from the upper left corner".to_owned()
+        }
         "--vpls" => "options of virtual point lights need --vpls N".to_owned(),
         _ => format!("{option} is missing"),
     }

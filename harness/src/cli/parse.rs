@@ -62,6 +62,8 @@ where
     let invocation = match cli.command {
         Some(Command::List { what }) => Invocation::List(what),
         Some(Command::Compare(args)) => Invocation::Compare(args),
+        Some(Command::Explain(args)) => Invocation::Explain(args),
+        Some(Command::Soak(args)) => Invocation::Soak(args),
         Some(Command::Study(args)) => Invocation::Study(args),
         Some(Command::Report(args)) => Invocation::Report(args),
         Some(Command::Advise(args)) => Invocation::Advise(args),

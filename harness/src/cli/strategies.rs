@@ -1,6 +1,6 @@
 //! The strategies that a command line asks for.
 
-use super::{CliError, CompareArgs};
+use super::{CliError, CompareArgs, ExplainArgs, Size, Strategies};
 use crate::{
     choice::Choice,
     strategy::{IdError, engines, rows},
@@ -16,27 +16,7 @@ impl CompareArgs {
     ///
     /// An id that is not understood, and options that contradict it.
     pub fn choices(&self) -> Result<Vec<Choice>, CliError> {
-        let size = [self.stage.size.width, self.stage.size.height];
-        let mut asked = Vec::new();
-        for id in &self.strategies.0 {
-            if let Some(ids) = engines::expand(id, size) {
-                let ids = ids.map_err(|known| {
-                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-                    CliError::unknown("engine", id, &known)
-                })?;
-                for id in ids {
-                    asked.push(Choice::parse(&id)?);
-                }
-            } else if id.eq_ignore_ascii_case(ALL) {
-                for row in rows() {
-                    let mut choice = Choice::parse(row.family)?;
-                    choice.is_named = false;
-                    asked.push(choice);
-                }
-            } else {
-                asked.push(Choice::parse(id)?);
-            }
-        }
+        let asked = asked(&self.strategies, self.stage.size)?;
         let mut choices = Vec::new();
         for choice in asked {
             // A strategy that takes no source is there once.
@@ -47,6 +27,43 @@ impl CompareArgs {
         }
         Ok(choices)
     }
+}
+
+impl ExplainArgs {
+    /// All strategies that the command line asks for, in its order.
+    ///
+    /// # Errors
+    ///
+    /// An id that is not understood.
+    pub fn choices(&self) -> Result<Vec<Choice>, CliError> {
+        asked(&self.strategies, self.stage.size)
+    }
+}
+
+/// The strategies that a list of ids names, on images of a size.
+fn asked(strategies: &Strategies, size: Size) -> Result<Vec<Choice>, CliError> {
+    let size = [size.width, size.height];
+    let mut asked = Vec::new();
+    for id in &strategies.0 {
+        if let Some(ids) = engines::expand(id, size) {
+            let ids = ids.map_err(|known| {
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                CliError::unknown("engine", id, &known)
+            })?;
+            for id in ids {
+                asked.push(Choice::parse(&id)?);
+            }
+        } else if id.eq_ignore_ascii_case(ALL) {
+            for row in rows() {
+                let mut choice = Choice::parse(row.family)?;
+                choice.is_named = false;
+                asked.push(choice);
+            }
+        } else {
+            asked.push(Choice::parse(id)?);
+        }
+    }
+    Ok(asked)
 }
 
 impl From<IdError> for CliError {

@@ -178,7 +178,8 @@ fn unknown_names_get_a_suggestion() {
     let unknown = "there is no option called --zzzz: `lightbench --help` lists all options";
     assert_eq!(error_of("--zzzz"), unknown);
     assert_eq!(error_of("compar"), "there is no command called compar: did you mean compare?");
-    let known = "the known names are compare, advise, study, report, truth, cdi, fit-ltc, list";
+    let known = "the known names are compare, explain, advise, study, report, truth, cdi, soak, \
+         fit-ltc, list";
     assert_eq!(error_of("zzzz"), format!("there is no command called zzzz: {known}"));
     let needed = "study needs <STUDY>: Study to run: `lightbench list studies` lists them";
     assert_eq!(error_of("study"), needed);

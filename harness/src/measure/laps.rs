@@ -61,7 +61,7 @@ impl Contest<'_> {
             }
             let Some(reference) = reference else { continue };
             self.draw(stage, reference)?;
-            seen(&images, &read(&self.gpu, stage)?)?;
+            seen(pose, &images, &read(&self.gpu, stage)?)?;
             stage.count_left_out()?;
         }
         Ok(())

@@ -12,6 +12,8 @@ pub(crate) struct Comparison<'a> {
     pub(crate) records: Vec<(usize, &'a Record)>,
     /// Where they were measured.
     pub(crate) machine: &'a Machine,
+    /// The command line of their run.
+    pub(crate) command: &'a [String],
 }
 
 /// All comparisons of a run, in the order in which they first appear.
@@ -20,7 +22,11 @@ pub(crate) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
     for entry in results.records.iter().enumerate() {
         match all.iter_mut().find(|known| comparable(known.first(), entry.1)) {
             Some(known) => known.records.push(entry),
-            None => all.push(Comparison { records: vec![entry], machine: &results.machine }),
+            None => all.push(Comparison {
+                records: vec![entry],
+                machine: &results.machine,
+                command: &results.command,
+            }),
         }
     }
     all

@@ -1,6 +1,7 @@
 //! Findings in words, computed from the records.
 
 use super::comparison::{Comparison, comparisons};
+use super::explained::worst_places;
 use super::format::{factor, number, short_adapter, significant};
 use super::lead::{Lead, span};
 use super::loss::{loss, range_loss};
@@ -255,7 +256,10 @@ pub fn notices(results: &Results) -> Vec<String> {
     for record in &results.records {
         if let Some(loss) = loss(record) {
             let mode = record.setting.mode.name();
-            notices.push(format!("{}, {mode}, {}: {loss}.", record.setting.scene, record.strategy));
+            let places = worst_places(&results.command, record);
+            let places = places.map_or_else(String::new, |places| format!(" {places}"));
+            let scene = &record.setting.scene;
+            notices.push(format!("{scene}, {mode}, {}: {loss}.{places}", record.strategy));
         }
     }
     for record in &results.records {

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::comparison::Comparison;
+use super::explained::explain_command;
 use super::format::{number, significant};
 use super::markup::{Html, html};
 use super::panels::{Panel, panels};
@@ -33,7 +34,10 @@ pub(crate) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Ht
     let viewer = |record: &&Record| Panel {
         name: record.strategy.to_string(),
         class: record.strategy.class(),
-        body: html!("<div class=\"stage\">\n{}</div>\n", viewer(record, baseline, kept)),
+        body: html!(
+            "<div class=\"stage\">\n{}</div>\n",
+            viewer(record, baseline, kept, explain_command(comparison.command, record, None))
+        ),
     };
     let shown: Vec<Panel> = shown.iter().map(viewer).collect();
     html!(
@@ -42,7 +46,12 @@ pub(crate) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Ht
     )
 }
 
-fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Html {
+fn viewer(
+    record: &Record,
+    baseline: Option<&str>,
+    kept: &BTreeSet<&str>,
+    explain: Option<String>,
+) -> Html {
     let images = &record.image.files;
     let known = |name: Option<&'_ str>| name.filter(|name| kept.contains(name)).map(str::to_owned);
     let image = known(images.tone_mapped.as_deref());
@@ -58,6 +67,7 @@ fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Htm
         difference: difference.as_deref(),
         gain: images.difference_amplification,
         verdict: verdict(record),
+        explain: explain.filter(|_| !record.is_control()),
     };
     if record.is_control() {
         return pair.still(&"The surfaces alone, without lights.".into());
@@ -68,11 +78,11 @@ fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Htm
     let heat = known(images.heat_map.as_deref());
     pair.main()
         + pair.difference(record.image.differing_channels == Some(0))
-        + heat_map(record, heat.as_deref())
+        + heat_map(record, &pair, heat.as_deref())
 }
 
 /// Lights per pixel over the scene, with the scale of its colours.
-fn heat_map(record: &Record, heat: Option<&str>) -> Html {
+fn heat_map(record: &Record, pair: &PicturePair<'_>, heat: Option<&str>) -> Html {
     if heat.is_none() {
         return Html::default();
     }
@@ -81,12 +91,13 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
         format!("{} lists {} lights per pixel on average.", record.strategy, significant(listed))
     });
     html!(
-        "<figure class=\"difference\"><div style=\"aspect-ratio:{}/{}\">{}</div>\
+        "<figure class=\"difference\"><div style=\"aspect-ratio:{}/{}\"{}>{}</div>\
          <figcaption><b>Lights per pixel.</b> {}\
          <div class=\"heat-scale\" aria-hidden=\"true\"><span>0</span><i class=\"heat-ramp\"></i>\
          <span>150</span><i class=\"heat-above\"></i><span>more</span></div></figcaption></figure>\n",
         record.setting.width,
         record.setting.height,
+        pair.explainable(),
         picture(heat, &alternative),
         mean
     )

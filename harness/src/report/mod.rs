@@ -7,6 +7,7 @@ pub(crate) mod bill;
 pub(crate) mod colours;
 pub(crate) mod column;
 pub(crate) mod comparison;
+pub(crate) mod explained;
 mod families;
 pub(crate) mod finding;
 pub(crate) mod fit;

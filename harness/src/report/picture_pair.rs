@@ -23,6 +23,8 @@ pub(crate) struct PicturePair<'a> {
     pub(crate) gain: Option<f64>,
     /// What is known of the difference, in words.
     pub(crate) verdict: String,
+    /// The command line that explains a pixel, up to `--pixel`; `None` where there is none.
+    pub(crate) explain: Option<String>,
 }
 
 impl PicturePair<'_> {
@@ -34,7 +36,7 @@ impl PicturePair<'_> {
             return self.still(&caption);
         };
         html!(
-            "<figure class=\"main\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1};--at:50%\">\
+            "<figure class=\"main\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1};--at:50%\"{7}>\
              <img data-picture=\"{2}\" alt=\"{3}: {4}\" draggable=\"false\">\
              <img data-picture=\"{5}\" alt=\"{3} with {6}\" draggable=\"false\" class=\"over\">\
              <span class=\"tag left\">{4}</span><span class=\"tag right\">{6}</span><span class=\"line\"></span>\
@@ -42,27 +44,47 @@ impl PicturePair<'_> {
              oninput=\"this.parentNode.style.setProperty('--at', this.value + '%')\" \
              aria-label=\"Share of the picture that shows {4}; the rest shows {6}\"></div>\
              <figcaption>Drag the line, or use the arrow keys: {4} on its left, <b>{6}</b> on its right.\
-             </figcaption></figure>\n",
+             </figcaption>{8}</figure>\n",
             self.size[0],
             self.size[1],
             reference,
             self.scene,
             self.reference_name,
             image,
-            self.name
+            self.name,
+            self.explainable(),
+            self.pixel_line()
         )
+    }
+
+    /// The attributes of a picture whose pixels can be explained: the page's script reads them.
+    pub(crate) fn explainable(&self) -> Html {
+        let [width, height] = self.size;
+        let attributes = |command: &String| {
+            html!(" data-explain=\"{}\" data-size=\"{}x{}\"", command, width, height)
+        };
+        self.explain.as_ref().map(attributes).unwrap_or_default()
+    }
+
+    /// Where the script shows the command for the pixel under the pointer.
+    fn pixel_line(&self) -> Html {
+        let line = "<p class=\"pixel\" aria-live=\"off\">Point at a pixel of a picture: the command that explains it \
+                    appears here.</p>";
+        self.explain.as_ref().map(|_| Html::trusted(line)).unwrap_or_default()
     }
 
     /// The image alone.
     pub(crate) fn still(&self, caption: &Html) -> Html {
         let alternative = format!("{} with {}", self.scene, self.name);
         html!(
-            "<figure class=\"main\"><div class=\"compare\" style=\"aspect-ratio:{}/{}\">{}</div>\
-             <figcaption>{}</figcaption></figure>\n",
+            "<figure class=\"main\"><div class=\"compare\" style=\"aspect-ratio:{}/{}\"{}>{}</div>\
+             <figcaption>{}</figcaption>{}</figure>\n",
             self.size[0],
             self.size[1],
+            self.explainable(),
             picture(self.image, &alternative),
-            caption
+            caption,
+            self.pixel_line()
         )
     }
 
@@ -80,10 +102,11 @@ impl PicturePair<'_> {
         let alternative =
             format!("Difference of {} to {}: {}", self.name, self.reference_name, self.verdict);
         html!(
-            "<figure class=\"difference\"><div style=\"aspect-ratio:{}/{}\">{}</div>\
+            "<figure class=\"difference\"><div style=\"aspect-ratio:{}/{}\"{}>{}</div>\
              <figcaption><b>Difference{}.</b> {}{}</figcaption></figure>\n",
             self.size[0],
             self.size[1],
+            self.explainable(),
             picture(self.difference, &alternative),
             times,
             black,

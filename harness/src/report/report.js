@@ -61,6 +61,7 @@ function makeOpenable(plot) {
     if (!shot) return;
     viewer.replaceChildren(shot.content.cloneNode(true));
     showPictures(viewer);
+    makeExplainable(viewer);
     viewer.querySelector("button").addEventListener("click", () => { viewer.hidden = true; });
     viewer.dataset.key = mark.dataset.key;
     viewer.hidden = false;
@@ -76,6 +77,23 @@ function makeOpenable(plot) {
       event.preventDefault();
       open(mark);
     });
+  }
+}
+
+/** Shows the command that explains the pixel under the pointer. The last one stays, to be selected. */
+function makeExplainable(root) {
+  for (const picture of root.querySelectorAll("[data-explain]")) {
+    const line = picture.closest(".stage")?.querySelector(".pixel");
+    if (!line) continue;
+    const sides = picture.dataset.size.split("x").map(Number);
+    const show = (event) => {
+      const box = picture.getBoundingClientRect();
+      const shares = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+      const pixel = shares.map((share, axis) => Math.max(0, Math.min(sides[axis] - 1, Math.floor(share * sides[axis]))));
+      line.textContent = `${picture.dataset.explain} ${pixel.join(",")}`;
+      line.classList.add("known");
+    };
+    for (const kind of ["pointermove", "pointerdown"]) picture.addEventListener(kind, show);
   }
 }
 
@@ -123,6 +141,7 @@ function actions() {
 themeSwitch();
 actions();
 showPictures(document);
+makeExplainable(document);
 document.querySelectorAll("table.results").forEach(makeSortable);
 document.querySelectorAll(".panels").forEach(makeChoosable);
 document.querySelectorAll(".plot-of-errors").forEach(makeOpenable);

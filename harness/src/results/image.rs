@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::TemporalError;
+use super::{TemporalError, WorstPixel};
 
 /// The differences and errors of an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,9 @@ pub struct ImageFigures {
     /// Channels (three per pixel) that differ in any bit from the image of no culling.
     #[serde(default)]
     pub differing_channels: Option<u64>,
+    /// The pixel with the largest ratio, the first of several; absent if no channel differs, and in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst_pixel: Option<WorstPixel>,
     /// The largest relative difference that the method allows itself; `null` for a method that promises
     /// identical bits.
     #[serde(default)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Operations, Untested};
+use super::{MissedPair, Operations, Untested};
 
 /// The lists of a record, and their missed lights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +46,9 @@ pub struct ListFigures {
     /// wrong.
     #[serde(default)]
     pub missed_pairs: Option<u64>,
+    /// The first missed pair, by pixel and then by light; absent if none is missed, and in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_missed: Option<MissedPair>,
     /// (light, sample) pairs within range that were checked.
     #[serde(default)]
     pub checked_pairs: Option<u64>,

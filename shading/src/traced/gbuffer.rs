@@ -67,6 +67,7 @@ impl GBufferSamples {
             resources: buffers.iter().map(|(binding, buffer)| entry(*binding, buffer)).collect(),
             strategy: None,
             is_alone: false,
+            bounds: None,
         };
         pass.submit(renderer, view.viewport)?;
         let mut texels = Vec::new();

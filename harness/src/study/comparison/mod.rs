@@ -9,8 +9,8 @@ mod jobs;
 mod page;
 
 use self::page::{accuracy, frames, overview, path, scaling, sizes, views};
-use crate::report::markup::Html;
 use super::slice::{Study, TakesMotion, atrium};
+use crate::report::markup::Html;
 
 /// The greatest relMSE at which a lossy knob is called cheap.
 const CHEAP_REL_MSE: f64 = 1e-2;

@@ -117,8 +117,8 @@ fn command(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::slice::atrium;
     use crate::cli::{Invocation, parse};
+    use crate::study::slice::atrium;
 
     #[test]
     fn the_jobs_are_the_papers() {

@@ -97,8 +97,8 @@ fn strategies(size_px: [u32; 2]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::slice::atrium;
     use crate::cli::{Invocation, parse};
+    use crate::study::slice::atrium;
 
     fn planned(line: &str) -> Vec<Job> {
         let words = ["lightbench", "study", "engines"].into_iter().chain(line.split_whitespace());

@@ -14,8 +14,8 @@ mod page;
 mod sentences;
 
 use super::claims::Paper;
-use crate::report::markup::Html;
 use super::slice::{Study, TakesMotion, atrium};
+use crate::report::markup::Html;
 
 /// The study of engines.
 pub(crate) const STUDY: Study = Study {

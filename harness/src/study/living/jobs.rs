@@ -236,9 +236,9 @@ impl Plan<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::slice::atrium;
     use crate::checks::check_options;
     use crate::cli::{CompareArgs, Invocation, parse};
+    use crate::study::slice::atrium;
 
     fn planned(line: &str) -> Vec<(Job, CompareArgs)> {
         let words = ["lightbench", "study", "living"].into_iter().chain(line.split_whitespace());
@@ -287,7 +287,8 @@ mod tests {
         for (line, counts) in [("", FULL.counts), ("--quick", QUICK.counts)] {
             let jobs = planned(line);
             for &count in counts {
-                let of_count = in_section(&jobs, LIGHTS).filter(|args| args.stage.scattered() == count);
+                let of_count =
+                    in_section(&jobs, LIGHTS).filter(|args| args.stage.scattered() == count);
                 let orders: Vec<String> = of_count
                     .map(|args| {
                         let mover = args.stage.motion.words().join(" ");

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use shading::HdrImage;
 
 use crate::digits::rounded;
+use crate::report::explained::explain_command;
 use crate::report::format::{difference, significant};
 use crate::report::markup::{Html, html};
 use crate::report::picture_pair::{PicturePair, verdict};
@@ -119,6 +120,7 @@ impl<'a> Shots<'a> {
             difference: difference.as_deref(),
             gain: images.difference_amplification,
             verdict: verdict(record),
+            explain: explain_command(&job.command, record, None),
         };
         let shot = viewer(record, &pair, errors);
         self.viewers.insert(key.clone(), shot);

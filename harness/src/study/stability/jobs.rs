@@ -91,7 +91,8 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         let ids: Vec<&str> = group.iter().map(|flaw| flaw.id).collect();
         let names: Vec<&str> = group.iter().map(|flaw| flaw.name).collect();
         let ids = ids.join(",");
-        let options = [&["--strategies", ids.as_str(), "--truth", "full"], group[0].options].concat();
+        let options =
+            [&["--strategies", ids.as_str(), "--truth", "full"], group[0].options].concat();
         let options = [options, moved(way)].concat();
         let flawed = job(id.clone(), FLAWED, &(ix + 1).to_string(), &options);
         jobs.push(flawed.with("flaws", &names.join(SEPARATOR)));
@@ -134,10 +135,12 @@ mod tests {
     fn every_scenario_has_its_jobs_and_every_command_is_valid() {
         let jobs = planned("").expect("jobs");
         for scenario in stability::list() {
-            let of_scenario: Vec<&Job> = jobs.iter().filter(|job| job.scene == scenario.name).collect();
+            let of_scenario: Vec<&Job> =
+                jobs.iter().filter(|job| job.scene == scenario.name).collect();
             let sections: Vec<&str> = of_scenario.iter().map(|job| job.section.as_str()).collect();
             assert_eq!(sections[0], STILL, "{}", scenario.name);
-            let over_time = sections.iter().filter(|section| section.starts_with(OVER_TIME)).count();
+            let over_time =
+                sections.iter().filter(|section| section.starts_with(OVER_TIME)).count();
             assert_eq!(over_time, scenario.moves.len(), "{}", scenario.name);
             assert_eq!(sections.iter().filter(|s| **s == FLAWED).count(), by_options().len());
         }
@@ -153,7 +156,8 @@ mod tests {
     #[test]
     fn quick_runs_leave_out_heavy_scenarios() {
         let heavy = stability::list().iter().find(|scenario| scenario.heavy).expect("a heavy one");
-        let has = |line: &str| planned(line).expect("jobs").iter().any(|job| job.scene == heavy.name);
+        let has =
+            |line: &str| planned(line).expect("jobs").iter().any(|job| job.scene == heavy.name);
         assert!(has("") && !has("--quick"));
     }
 

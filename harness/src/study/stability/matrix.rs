@@ -47,7 +47,9 @@ fn matrix(done: &Done, title: &str, note: &str, methods: &[Method]) -> Html {
     if methods.is_empty() {
         return Html::default();
     }
-    let head = |method: &Method| html!("<th scope=\"col\" title=\"{}\"><span>{}</span></th>", method.name(), method.head());
+    let head = |method: &Method| {
+        html!("<th scope=\"col\" title=\"{}\"><span>{}</span></th>", method.name(), method.head())
+    };
     let heads: Html = methods.iter().map(head).collect();
     let scenarios: Vec<&Scenario> = done.scenes().into_iter().filter_map(scenario_of).collect();
     let mut body = Html::default();

@@ -66,7 +66,9 @@ impl Outcome {
                  light volumes, within 0.1 %)"
             }
             Self::Lossy => "the method states that it loses light, and it did",
-            Self::Wrong => "light is lost, or the image differs, and the method promises that it does not, or fails on purpose",
+            Self::Wrong => {
+                "light is lost, or the image differs, and the method promises that it does not, or fails on purpose"
+            }
         }
     }
 }

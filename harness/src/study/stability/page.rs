@@ -7,6 +7,7 @@ use super::jobs::scenario_of;
 use super::matrix::anchor;
 use super::outcome::Outcome;
 use super::sentences::has_failed;
+use crate::report::explained::{explain_command, worst_places};
 use crate::report::format::{ABSENT, difference, significant};
 use crate::report::markup::{Html, html};
 use crate::report::page::shell_words;
@@ -22,12 +23,7 @@ const NOTE: &str = "Each row is a method in one mode. Open it for the command th
                     where the image differs.";
 
 /// The parts of a scenario's section.
-pub(crate) fn parts(
-    done: &Done,
-    scene: &str,
-    _: &mut Charts,
-    shots: &mut Shots<'_>,
-) -> Vec<Part> {
+pub(crate) fn parts(done: &Done, scene: &str, _: &mut Charts, shots: &mut Shots<'_>) -> Vec<Part> {
     let Some(scenario) = scenario_of(scene) else { return Vec::new() };
     let mut body = about(done, scenario, shots);
     for (title, methods) in
@@ -63,9 +59,15 @@ impl FigureWords for Scenario {
     fn figure_words(&self) -> &'static str {
         match self.figure {
             Figure::None => "",
-            Figure::FalsePositives => "the figure below is what lists hold beyond the lights that reach their samples.",
-            Figure::ListedOverContributing => "the figure below is listed lights over contributing ones.",
-            Figure::TemporalError => "the figure below is how much the error changes from frame to frame.",
+            Figure::FalsePositives => {
+                "the figure below is what lists hold beyond the lights that reach their samples."
+            }
+            Figure::ListedOverContributing => {
+                "the figure below is listed lights over contributing ones."
+            }
+            Figure::TemporalError => {
+                "the figure below is how much the error changes from frame to frame."
+            }
             Figure::FrameTime => "the figure below is the spread of the time to assign and shade.",
         }
     }
@@ -100,7 +102,8 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
     let line = |method: &Method| {
         let cell = cell(done, scenario.name, method);
         let deferred = |case: &&Case<'_>| case.mode == Some(Mode::Deferred);
-        let mut values = cell.cases.iter().filter(deferred).filter_map(|case| value(case.entry?.record));
+        let mut values =
+            cell.cases.iter().filter(deferred).filter_map(|case| value(case.entry?.record));
         let value = values.next()?;
         Some(html!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", method.name(), value))
     };
@@ -141,7 +144,9 @@ fn shown(scene: &str, cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
     let runs: Html = cell.cases.iter().map(run).collect();
     let flaw = match &cell.method {
         Method::Sound(_) => Html::default(),
-        Method::Flawed(flaw) => html!("<p>{} <small>Source: {}.</small></p>\n", flaw.fails, flaw.source),
+        Method::Flawed(flaw) => {
+            html!("<p>{} <small>Source: {}.</small></p>\n", flaw.fails, flaw.source)
+        }
     };
     let pictures = if has_failed(cell) { pictures(cell, shots) } else { Html::default() };
     html!(
@@ -161,13 +166,15 @@ fn shown(scene: &str, cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
 fn run(case: &Case<'_>) -> Html {
     let mode = case.mode.map_or("both modes", Mode::name);
     let command = command(case);
+    let places = case.entry.and_then(|entry| worst_places(&entry.job.command, entry.record));
     html!(
-        "<li><i class=\"cell {}\">{}</i> {}, {}: {}<pre class=\"command\"><code>{}</code></pre></li>\n",
+        "<li><i class=\"cell {}\">{}</i> {}, {}: {} {}<pre class=\"command\"><code>{}</code></pre></li>\n",
         case.outcome.name(),
         case.outcome.sign(),
         case.job.section.replace('-', " "),
         mode,
         if case.words.is_empty() { ABSENT.to_owned() } else { case.words.clone() },
+        places.unwrap_or_default(),
         command
     )
 }
@@ -176,7 +183,9 @@ fn run(case: &Case<'_>) -> Html {
 fn command(case: &Case<'_>) -> String {
     let mut words = case.job.command.clone();
     let mut set = |option: &str, value: &str| {
-        if let Some(at) = words.iter().position(|word| word == option).filter(|at| at + 1 < words.len()) {
+        if let Some(at) =
+            words.iter().position(|word| word == option).filter(|at| at + 1 < words.len())
+        {
             words[at + 1] = value.to_owned();
         }
     };
@@ -194,13 +203,17 @@ fn command(case: &Case<'_>) -> String {
 fn pictures(cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
     let failed = |case: &&Case<'_>| matches!(case.outcome, Outcome::Lossy | Outcome::Wrong);
     let error = |case: &&Case<'_>| {
-        case.entry.and_then(|entry| entry.record.image.errors.get("rel_mse").copied().flatten()).unwrap_or(0.0)
+        case.entry
+            .and_then(|entry| entry.record.image.errors.get("rel_mse").copied().flatten())
+            .unwrap_or(0.0)
     };
     let kept = |case: &&Case<'_>| {
         case.entry.is_some_and(|entry| entry.record.image.files.difference.is_some())
     };
     let shown = cell.cases.iter().filter(failed).filter(kept);
-    let Some(entry) = shown.max_by(|a, b| error(a).total_cmp(&error(b))).and_then(|case| case.entry) else {
+    let Some(entry) =
+        shown.max_by(|a, b| error(a).total_cmp(&error(b))).and_then(|case| case.entry)
+    else {
         return Html::default();
     };
     let files = &entry.record.image.files;
@@ -217,7 +230,12 @@ fn pictures(cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
         difference: difference.as_deref(),
         gain: files.difference_amplification,
         verdict: verdict(entry.record),
+        explain: explain_command(&entry.job.command, entry.record, None),
     };
     let stage = html!("<div class=\"stage\">{}{}</div>\n", pair.main(), pair.difference(false));
-    stage + html!("<div class=\"views\">{}</div>\n", figure(heat, "Lights per sample", "blue is 0, red 150 or more."))
+    stage
+        + html!(
+            "<div class=\"views\">{}</div>\n",
+            figure(heat, "Lights per sample", "blue is 0, red 150 or more.")
+        )
 }

@@ -12,9 +12,8 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
     let results = done.results.values().next()?;
     let adapter = short_adapter(&results.machine.adapter);
     let sound = cells(done, &methods(done));
-    let count = |outcome: Outcome| {
-        sound.iter().filter(|(_, cell)| cell.outcome() == Some(outcome)).count()
-    };
+    let count =
+        |outcome: Outcome| sound.iter().filter(|(_, cell)| cell.outcome() == Some(outcome)).count();
     let tested = sound.iter().filter(|(_, cell)| cell.outcome().is_some()).count();
     let wrong = count(Outcome::Wrong);
     let wrongs = match wrong {
@@ -69,7 +68,11 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     }
     let undrawn = done.scenes().into_iter().filter_map(scenario_of);
     notices.extend(undrawn.filter_map(|scenario| {
-        Some(format!("{} does not show its failure: {}.", scenario.name, scenario.why_not?.trim_end_matches('.')))
+        Some(format!(
+            "{} does not show its failure: {}.",
+            scenario.name,
+            scenario.why_not?.trim_end_matches('.')
+        ))
     }));
     notices
 }

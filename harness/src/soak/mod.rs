@@ -1,0 +1,154 @@
+//! `lightbench soak`: thousands of random frames, each of them checked.
+//!
+//! A soak looks for what no case of a test names: rare combinations, state that an earlier frame leaves behind, and
+//! memory that nobody frees.
+//!
+//! # How
+//!
+//! 1. Frames come in rounds of [`ROUND_FRAMES`]. A round draws its lights, their motion and order, its image size, its
+//!    mode and its strategies ([`plan`]). All of that follows from the seed and the round's number.
+//! 2. Each frame of a round has a camera of its own and a time of its own. Some frames have an entry pool that is far
+//!    too small.
+//! 3. Each strategy draws each frame once. Its lists are checked in f64 for missed lights, and its image is compared
+//!    with that of no culling, bit for bit. Only strategies that promise both take part.
+//! 4. After each round, everything that the round made is freed, and memory is looked at ([`memory`]).
+//!
+//! The first finding ends the soak. Its message gives the command that starts again at that round, which reproduces
+//! it: a round depends on no other.
+//!
+//! Devices and compiled shaders are kept over all rounds. Device loss is not simulated.
+
+mod frame;
+mod memory;
+mod plan;
+
+use std::time::Instant;
+
+use assign::{Assignment, Gpu};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{
+    bench::Bench,
+    cli::{SoakArgs, StageArgs},
+    error::HarnessError,
+    report::{page::shell_words, significant},
+    strategy::Method,
+};
+
+use frame::{Counts, draw_round};
+use memory::{Memory, MemoryWatch};
+use plan::{Round, canonical_stage};
+
+/// Frames of a round.
+pub const ROUND_FRAMES: u32 = 10;
+
+/// Every so many rounds, the first round is drawn again: its shaders are compiled, so the process should not grow.
+const AGAIN_EVERY: u32 = 10;
+
+/// Alters a strategy before it draws; for tests that plant a fault.
+pub type Alter<'a> = dyn Fn(&Gpu, Box<dyn Assignment>) -> Box<dyn Assignment> + 'a;
+
+/// Opens a device and runs a soak; returns what to print.
+pub fn soak_alone(args: &SoakArgs) -> Result<String, HarnessError> {
+    let mut bench = Bench::open(args.adapter.as_deref())?;
+    soak(&mut bench, args)
+}
+
+/// Runs a soak on an open device; returns what to print.
+///
+/// # Errors
+///
+/// [`HarnessError::Finding`] with the seed and the frame that reproduce it.
+pub fn soak(bench: &mut Bench, args: &SoakArgs) -> Result<String, HarnessError> {
+    soak_altered(bench, args, &|_, strategy| strategy)
+}
+
+/// Runs a soak whose strategies were altered.
+///
+/// # Errors
+///
+/// As [`soak`].
+pub fn soak_altered(
+    bench: &mut Bench,
+    args: &SoakArgs,
+    alter: &Alter<'_>,
+) -> Result<String, HarnessError> {
+    let began = Instant::now();
+    let gpu = bench.gpu().clone();
+    let rest = canonical_stage(&args.scene)?;
+    // Targets of the largest size, so that no round replaces them.
+    bench.stage(&rest)?;
+    let first = args.from / ROUND_FRAMES;
+    let rounds = args.frames.div_ceil(ROUND_FRAMES);
+    let bar = progress_bar(u64::from(args.frames));
+    let mut counts = Counts::default();
+    let mut watch = MemoryWatch::default();
+    let mut drawn = 0;
+    for ix in first..first + rounds {
+        let is_again = ix > 0 && ix % AGAIN_EVERY == 0;
+        let round = Round::new(args, if is_again { 0 } else { ix })?;
+        let frames = ROUND_FRAMES.min(args.frames - drawn);
+        bar.set_message(round.summary());
+        let before = Memory::now(&gpu);
+        let found = draw_round(bench, &round, frames, alter, &mut counts, &bar)?;
+        drawn += frames;
+        if let Some(found) = found {
+            bar.finish_and_clear();
+            let frame = ix * ROUND_FRAMES + found.frame;
+            return Err(finding(args, frame, &round, &found.words));
+        }
+        free(bench, &rest)?;
+        let after = Memory::now(&gpu);
+        // Only a round that was drawn before in this run has all its shaders.
+        let is_known = is_again && first == 0;
+        if let Some(words) = watch.look(before, after, is_known) {
+            bar.finish_and_clear();
+            return Err(finding(args, (ix + 1) * ROUND_FRAMES - 1, &round, &words));
+        }
+    }
+    bar.finish_and_clear();
+    let seconds = significant(began.elapsed().as_secs_f64());
+    Ok(format!("{}{}\nin {seconds} s\n", counts.summary(args.seed, drawn), watch.summary()))
+}
+
+/// Replaces the lights of the last round by few ones, and waits until the device has freed the others.
+fn free(bench: &mut Bench, rest: &StageArgs) -> Result<(), HarnessError> {
+    bench.stage(rest)?.prepare()?;
+    bench.gpu().queue.submit([]);
+    Ok(bench.gpu().wait()?)
+}
+
+/// Alters the strategy of a method.
+fn altered(gpu: &Gpu, method: Method, alter: &Alter<'_>) -> Method {
+    match method {
+        Method::Lists { strategy, early_exit, stochastic, is_random } => {
+            Method::Lists { strategy: alter(gpu, strategy), early_exit, stochastic, is_random }
+        }
+        other => other,
+    }
+}
+
+/// The error that ends a soak.
+fn finding(args: &SoakArgs, frame: u32, round: &Round, words: &str) -> HarnessError {
+    let scene = match args.scene == "town-small" {
+        true => String::new(),
+        false => format!(" --scene {}", shell_words(std::slice::from_ref(&args.scene))),
+    };
+    let again = format!(
+        "lightbench soak --seed {} --from {} --frames {ROUND_FRAMES}{scene}",
+        args.seed,
+        frame / ROUND_FRAMES * ROUND_FRAMES
+    );
+    let drawn = round.words.join(" ");
+    let mode = round.mode.name();
+    HarnessError::Finding(format!(
+        "frame {frame} of seed {}: {words}; drawn {mode} with {drawn}; `{again}` draws it again",
+        args.seed
+    ))
+}
+
+fn progress_bar(total: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(total).with_style(style)
+}
