@@ -48,11 +48,11 @@ fn args_of(arguments: &[&str]) -> ExplainArgs {
 /// A strategy with a fault in it, or without.
 fn method_of(bench: &Bench, id: &str, fault: Option<Fault>) -> Method {
     let method = Choice::parse(id).expect("an id").make(bench.gpu()).expect("made");
-    let Method::Lists { mut strategy, early_exit, stochastic } = method else { panic!("{id}") };
+    let Method::Lists { mut strategy, early_exit, stochastic, is_random } = method else { panic!("{id}") };
     if let Some(fault) = fault {
         strategy = Box::new(Faulty::new(bench.gpu(), strategy, fault).expect("planted"));
     }
-    Method::Lists { strategy, early_exit, stochastic }
+    Method::Lists { strategy, early_exit, stochastic, is_random }
 }
 
 /// The explanation of a pixel for a strategy.
@@ -85,6 +85,7 @@ fn a_planted_fault_names_the_missed_light() {
             seed: 1,
             cut: Cut::Windowed,
             operations: false,
+            is_temporal: false,
         };
         let mut contest = Contest::new(&gpu, stage, &mut methods, args.mode, plan).expect("made");
         let bvh = LightBvh::new(&lights);
