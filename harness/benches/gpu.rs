@@ -105,7 +105,7 @@ fn methods(criterion: &mut Criterion) {
             }
             let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
             let motion = args.stage.motion.motion.map_or(STILL, MotionChoice::name);
-            let name = format!("{}/{scene}/{}/{motion}", choice.id(), args.stage.lights);
+            let name = format!("{}/{scene}/{}/{motion}", choice.id(), args.stage.scattered());
             for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {
                 // No lists, nothing to assign.
                 if kind == PassKind::Assign && !choice.has_groups() {

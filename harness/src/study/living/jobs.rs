@@ -286,7 +286,8 @@ mod tests {
         for (line, counts) in [("", FULL.counts), ("--quick", QUICK.counts)] {
             let jobs = planned(line);
             for &count in counts {
-                let of_count = in_section(&jobs, LIGHTS).filter(|args| args.stage.lights == count);
+                let of_count =
+                    in_section(&jobs, LIGHTS).filter(|args| args.stage.scattered() == count);
                 let orders: Vec<String> = of_count
                     .map(|args| {
                         let mover = args.stage.motion.words().join(" ");
@@ -332,7 +333,7 @@ mod tests {
         for args in in_section(&jobs, DENSITY) {
             // 4,000 cubic metres at scale 1.6.
             let volume = 4_000.0 * (args.stage.scene_scale / 1.6).powi(3);
-            assert!((f64::from(args.stage.lights) / volume - 1.0).abs() < 1e-9);
+            assert!((f64::from(args.stage.scattered()) / volume - 1.0).abs() < 1e-9);
             assert!(!args.path && args.stage.light_order().to_string() == "gpu");
         }
     }
@@ -341,10 +342,10 @@ mod tests {
     fn images_of_many_lights_are_compared_at_a_small_size() {
         let jobs = planned("");
         for args in in_section(&jobs, LIGHTS).chain(in_section(&jobs, DENSITY)) {
-            assert_eq!(args.checks == Some(0), args.stage.lights >= 1_000_000);
+            assert_eq!(args.checks == Some(0), args.stage.scattered() >= 1_000_000);
         }
         let compared: Vec<(u32, bool)> = in_section(&jobs, IMAGES)
-            .map(|args| (args.stage.lights, args.stage.areas > 0.0))
+            .map(|args| (args.stage.scattered(), args.stage.areas > 0.0))
             .collect();
         assert_eq!(compared, [(1_000_000, false), (4_000_000, false), (4_000_000, true)]);
         assert!(in_section(&jobs, IMAGES).all(|args| args.checks == Some(2)));
