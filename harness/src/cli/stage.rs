@@ -20,7 +20,7 @@ pub struct StageArgs {
     #[arg(long, display_order = 1, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
     pub scene: String,
 
-    /// Lights to scatter, in addition to the scene's own; 0 to 16,777,216 [default: 1000; a scenario: 0]
+    /// Lights to scatter besides the scene's own; 0 to 16,777,216 [default: 1000; a scenario: 0]
     #[arg(long, display_order = 2, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_LIGHTS))]
     pub lights: Option<u32>,
 

@@ -245,13 +245,13 @@ fn light_at_eye(kit: &mut Kit) {
     kit.hall();
     for range_m in [0.5, 2.0, 6.0, 15.0] {
         let mut light = kit.point_light(kit.eye(), range_m);
-        light.intensity *= 0.1;
+        light.intensity *= 0.01;
         kit.lights.push(light);
     }
     let eye = kit.eye();
     let axis = kit.ahead(Vec3::Z) - eye;
     let mut spot = kit.spot(eye, axis, (0.2, 0.4), 12.0);
-    spot.intensity *= 0.3;
+    spot.intensity *= 0.1;
     kit.lights.push(spot);
     for _ in 0..80 {
         let on_floor =
@@ -270,7 +270,7 @@ fn light_at_eye(kit: &mut Kit) {
 fn one_covers_all(kit: &mut Kit) {
     kit.hall();
     kit.scatter(600, Kit::hall_box(), (0.1, 0.6));
-    let intensity = Vec3::splat(0.2);
+    let intensity = Vec3::splat(0.03);
     // In the middle of the list, so that neither end of it is special.
     kit.lights.insert(300, Light::point(Vec3::new(0.0, 4.0, -6.0), 5_000.0, intensity));
 }
