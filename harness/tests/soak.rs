@@ -22,8 +22,8 @@ fn a_short_soak_finds_nothing() {
         number.trim().parse().expect("a number")
     };
     assert!(number("drawn    ", " images by ") > 30, "{text}");
-    assert!(number("lists    ", " (light, sample) pairs, none missed") > 10_000, "{text}");
-    assert!(number("none missed; ", " images with overflowed groups") > 0, "{text}");
+    assert!(number("lists    ", " (light, sample) pairs, none missed") > 1_000, "{text}");
+    assert!(number("none missed; ", " images from a pool that was too small") > 0, "{text}");
 }
 
 #[test]

@@ -38,22 +38,22 @@ pub(super) struct Counts {
     images: u64,
     /// (Light, sample) pairs within range that were checked.
     pairs: u64,
-    /// Images of a strategy some of whose groups overflowed.
-    overflows: u64,
+    /// Images with overflowed groups, because the frame left the strategy too small a pool.
+    starved: u64,
 }
 
 impl Counts {
     /// The counts in words, one fact per line.
     pub(super) fn summary(&self, seed: u64, frames: u32) -> String {
-        let Self { strategies, refused, images, pairs, overflows } = *self;
-        let [strategies, refused, images, pairs, overflows] =
-            [strategies, refused, images, pairs, overflows].map(|n| grouped(&n.to_string()));
+        let Self { strategies, refused, images, pairs, starved } = *self;
+        let [strategies, refused, images, pairs, starved] =
+            [strategies, refused, images, pairs, starved].map(|n| grouped(&n.to_string()));
         let frames = grouped(&frames.to_string());
         format!(
             "soak     {frames} frames of seed {seed}: nothing found\n\
              drawn    {images} images by {strategies} strategies, all as without culling; {refused} more refused \
              their round\n\
-             lists    {pairs} (light, sample) pairs, none missed; {overflows} images with overflowed groups\n"
+             lists    {pairs} (light, sample) pairs, none missed; {starved} images from a pool that was too small\n"
         )
     }
 }
@@ -119,8 +119,14 @@ pub(super) fn draw_round(
                 counts.refuse(error)?;
                 continue;
             }
-            let check =
-                Check { gpu: &gpu, stage, mode: round.mode, reference: &reference, bvh: &bvh };
+            let check = Check {
+                gpu: &gpu,
+                stage,
+                mode: round.mode,
+                reference: &reference,
+                bvh: &bvh,
+                has_small_pool: pool_of(&contender, plan).is_some(),
+            };
             if let Some(words) = check.look(&contender, counts)? {
                 let words =
                     format!("{}{} {words}", contender.choice.id(), pool_words(&contender, plan));
@@ -192,6 +198,8 @@ struct Check<'a> {
     mode: Mode,
     reference: &'a HdrImage,
     bvh: &'a LightBvh<'a>,
+    /// Whether the frame limits the strategy's pool.
+    has_small_pool: bool,
 }
 
 impl Check<'_> {
@@ -235,7 +243,8 @@ impl Check<'_> {
             self.gpu.queue.submit([encoder.finish()]);
         }
         let snapshot = strategy.lists().snapshot(self.gpu)?;
-        counts.overflows += u64::from(snapshot.counters.overflowed_groups > 0);
+        let is_starved = self.has_small_pool && snapshot.counters.overflowed_groups > 0;
+        counts.starved += u64::from(is_starved);
         let frame = renderer.frame(view, lights);
         let mut truth = ListsTruth::default();
         let knows_normals = strategy.needs().normals;
