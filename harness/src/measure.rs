@@ -9,8 +9,8 @@ use assign::{
     Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
 };
 use shading::{
-    Cut, HdrImage, LightBvh, LightingOptions, ListsTruth, Mode, Operations, count_operations,
-    record_for_probe, visit_lists,
+    Cut, HdrImage, LayerSamples, LightBvh, LightingOptions, ListsTruth, Mode, Operations,
+    count_operations, record_for_probe, visit_layer_lists, visit_lists,
 };
 
 use crate::{
@@ -41,6 +41,8 @@ pub struct ListsFigures {
     pub memory_bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
+    /// Of the samples of the truth, those of layers.
+    pub layer_samples: u64,
     /// How long the lists are that samples read; empty where the truth was not asked for.
     pub lengths: ListLengths,
     /// Light operations, where they were asked for.
@@ -330,6 +332,7 @@ fn count(
             Some(count_operations(renderer, strategy, &frame, options, exposure)?)
         }
     };
+    let mut layer_samples = 0;
     let truth = match truth {
         None => None,
         Some(bvh) => {
@@ -347,6 +350,19 @@ fn count(
                     found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
                 },
             )?;
+            let layers = LayerSamples::capture(renderer, &frame)?;
+            visit_layer_lists(
+                renderer,
+                strategy,
+                &frame,
+                &snapshot,
+                &layers,
+                &mut |samples, lists| {
+                    let checked = bvh.check(samples, lists, false);
+                    layer_samples += checked.samples;
+                    found = found.plus(checked);
+                },
+            )?;
             Some(found)
         }
     };
@@ -362,6 +378,7 @@ fn count(
         bytes: strategy.lists().bytes(),
         memory_bytes: memory_bytes(stage, strategy, mode),
         truth,
+        layer_samples,
         lengths,
         operations,
     })

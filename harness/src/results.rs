@@ -54,7 +54,7 @@ pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use planes::{PlaneSource, Planes};
 pub use record::Record;
 pub(crate) use seal::{sealed, unsealed};
-pub use setting::{MotionSetting, Setting};
+pub use setting::{LayerSetting, MotionSetting, Setting};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use times::Times;
 pub use truth_image::TruthImage;

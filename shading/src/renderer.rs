@@ -1,7 +1,8 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
 use assign::{
-    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
+    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes,
+    SampleDomain, View,
 };
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
@@ -9,6 +10,7 @@ use scenes::{Aabb, Model, Scene};
 use crate::{
     LightingOptions, Mode, ShadingError,
     geometry::SceneGpu,
+    layers::{LayerKinds, LayerOptions, LayerScene},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
     raster::{RasterPass, RasterPipelines},
@@ -36,6 +38,8 @@ pub struct Renderer {
     gbuffer: RasterPipelines,
     gbuffer_ids: RasterPipelines,
     clay: RasterPipelines,
+    /// What is drawn over the opaque surfaces.
+    pub(crate) layers: Option<LayerScene>,
 }
 
 impl Renderer {
@@ -69,11 +73,13 @@ impl Renderer {
             scene_group: scene.bind_group(gpu, &inputs),
             scene,
             targets,
+            layers: None,
         })
     }
 
     /// A renderer of the same scene for a second view in the same frame, such as a light's. It has
-    /// its own view, lights and targets, and shares the uploaded scene and pipelines.
+    /// its own view, lights and targets, and shares the uploaded scene and pipelines. It has no layers, and draws
+    /// transparent surfaces as opaque ones.
     pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
@@ -99,7 +105,25 @@ impl Renderer {
             gbuffer: self.gbuffer.clone(),
             gbuffer_ids: self.gbuffer_ids.clone(),
             clay: self.clay.clone(),
+            layers: None,
         })
+    }
+
+    /// Sets what is drawn over the opaque surfaces, for frames that are prepared afterwards and for [`Lighting`](crate::Lighting) that is
+    /// made afterwards. Transparent surfaces are then no longer drawn as opaque ones.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for faulty options, for transparent surfaces in a scene without any, and if the
+    /// device cannot blend into single precision.
+    pub fn show_layers(&mut self, options: &LayerOptions) -> Result<(), ShadingError> {
+        self.layers = LayerScene::new(&self.gpu, &self.scene, options)?;
+        Ok(())
+    }
+
+    /// The kinds of layers that it draws.
+    pub fn layer_kinds(&self) -> LayerKinds {
+        self.layers.as_ref().map(LayerScene::kinds).unwrap_or_default()
     }
 
     /// The device it draws on.
@@ -113,9 +137,15 @@ impl Renderer {
     }
 
     /// The frame that a strategy gets: this view and these lights, with this renderer's depth,
-    /// normals and base colours, the boxes of its models, and the box around its surfaces.
+    /// normals and base colours, the boxes of its models, and the box around its surfaces. With layers, shading
+    /// looks lists up at any depth.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
+        let samples = match self.layers {
+            Some(_) => SampleDomain::AnyDepth,
+            None => SampleDomain::OpaqueSurfaces,
+        };
         Frame::new(view, lights)
+            .sampled_at(samples)
             .with_seed(self.seed)
             .with_depth(&self.targets.depth)
             .with_normals(&self.targets.normal)
@@ -147,6 +177,9 @@ impl Renderer {
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
         self.lights = LightTotals::of_buffer(lights);
+        if let Some(layers) = &mut self.layers {
+            layers.prepare(&self.gpu, view, self.surface_bounds)?;
+        }
         Ok(())
     }
 
@@ -246,6 +279,7 @@ impl Renderer {
     ) {
         let viewport = view.viewport;
         let textures = name != "depth" || self.scene.has_mask();
+        let only_opaque = self.layer_kinds().sheets;
         passes.render(name, descriptor, &mut |pass| {
             pass.set_viewport(
                 viewport.x as f32,
@@ -260,7 +294,7 @@ impl Renderer {
                 pass.set_bind_group(1, lists, &[]);
             }
             pass.set_bind_group(2, scene, &[]);
-            self.scene.draw(pass, textures, |key| pipelines.get(key));
+            self.scene.draw(pass, textures, only_opaque, |key| pipelines.get(key));
         });
     }
 

@@ -43,7 +43,7 @@ fn instance() {
 #[test]
 fn material() {
     let rust = struct_layout!(MaterialRecord: base_color, emissive, metallic, roughness,
-        normal_scale, alpha_cutoff, unused, dielectric, uv_transforms);
+        normal_scale, alpha_cutoff, transmission, dielectric, uv_transforms);
     check_element("Material", &rust);
 }
 

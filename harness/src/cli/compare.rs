@@ -8,6 +8,7 @@ use shading::{AreaModel, Cut};
 
 use super::{
     headings::{BOUNCE, CHECKS, LISTS, SHADING, TIMING},
+    layers::LayerArgs,
     modes::Modes,
     named::named,
     stage::StageArgs,
@@ -55,6 +56,10 @@ pub struct CompareArgs {
     /// Folder for index.html, results.json and the pictures
     #[arg(long, display_order = 11, value_name = "DIR", default_value = "out/compare")]
     pub out: PathBuf,
+
+    /// What is drawn over the opaque surfaces.
+    #[command(flatten)]
+    pub layers: LayerArgs,
 
     /// How to integrate the light of area lights [default: ltc]
     ///
