@@ -60,9 +60,11 @@ fn scene() -> Scene {
 /// Every kind of layer.
 fn everything_shown() -> LayerOptions {
     let air = Aabb::new(Vec3::new(-2.0, 0.2, -2.0), Vec3::new(2.0, 3.0, 3.0));
+    let mut particles = scatter_particles(60, 1, air).unwrap();
+    particles.iter_mut().for_each(|particle| particle.radius_m *= 5.0);
     LayerOptions {
         sheets: true,
-        particles: scatter_particles(60, 1, air).unwrap(),
+        particles,
         fog_per_m: Some(0.15),
     }
 }
@@ -174,7 +176,7 @@ fn lights(gpu: &Gpu, areas: bool) -> LightBuffer {
 #[test]
 fn clusters_show_layers_as_no_culling_does_and_a_blind_strategy_is_found() {
     let gpu = common::gpu();
-    let mut offset = common::view([50, 30]);
+    let mut offset = common::view([70, 44]);
     (offset.viewport.x, offset.viewport.y) = (13, 7);
     let standard = View { depth: assign::DepthMapping::Standard, far_m: Some(12.0), ..view() };
     let orthographic = View {
