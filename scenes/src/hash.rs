@@ -206,7 +206,7 @@ const COLORS: u64 = 0x636f_6c6f_7273;
 const SUNS: u64 = 0x7375_6e73;
 const LIGHT_ANIMATION: u64 = 0x616e_696d_6174_6564;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
-const TRANSPARENT: u64 = 0x676c_6173_73;
+const TRANSPARENT: u64 = 0x0067_6c61_7373;
 
 #[cfg(test)]
 mod tests {

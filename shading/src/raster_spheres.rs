@@ -57,7 +57,7 @@ impl RasterSpheres {
         if renderer.layers.is_some() {
             return Err(AssignError::Unsupported {
                 strategy: "RasterSphere".into(),
-                asked: "look-ups at any depth".into(),
+                asked: "layers over the opaque surfaces".into(),
                 reason: "its volumes light only the opaque surfaces in the depth buffer".into(),
             }
             .into());

@@ -138,11 +138,13 @@ impl Renderer {
 
     /// The frame that a strategy gets: this view and these lights, with this renderer's depth,
     /// normals and base colours, the boxes of its models, and the box around its surfaces. With layers, shading
-    /// looks lists up at any depth.
+    /// also looks lists up in front of opaque surfaces, and with fog at any depth.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
-        let samples = match self.layers {
-            Some(_) => SampleDomain::AnyDepth,
-            None => SampleDomain::OpaqueSurfaces,
+        let kinds = self.layer_kinds();
+        let samples = match (kinds.fog, kinds.any()) {
+            (true, _) => SampleDomain::AnyDepth,
+            (false, true) => SampleDomain::InFront,
+            (false, false) => SampleDomain::OpaqueSurfaces,
         };
         Frame::new(view, lights)
             .sampled_at(samples)

@@ -62,11 +62,7 @@ fn everything_shown() -> LayerOptions {
     let air = Aabb::new(Vec3::new(-2.0, 0.2, -2.0), Vec3::new(2.0, 3.0, 3.0));
     let mut particles = scatter_particles(60, 1, air).unwrap();
     particles.iter_mut().for_each(|particle| particle.radius_m *= 5.0);
-    LayerOptions {
-        sheets: true,
-        particles,
-        fog_per_m: Some(0.15),
-    }
+    LayerOptions { sheets: true, particles, fog_per_m: Some(0.15) }
 }
 
 fn view() -> View {
@@ -309,7 +305,7 @@ fn what_serves_only_opaque_surfaces_refuses_layers() {
     let (area, suns) = (AreaModel::default(), Suns::default());
     let error =
         RasterSpheres::new(&renderer, lights.kinds(), area, Cut::default(), suns).unwrap_err();
-    assert!(error.to_string().contains("look-ups at any depth"), "{error}");
+    assert!(error.to_string().contains("layers over the opaque surfaces"), "{error}");
     let options = LightingOptions { compensation: Some(10.0), ..LightingOptions::default() };
     let strategy = Everything::new(&gpu).unwrap();
     let error = Lighting::new(&renderer, &strategy, Mode::Forward, options).unwrap_err();

@@ -7,7 +7,10 @@ use assign::{
     conformance::{LinkedModule, StructLayout},
     struct_layout,
 };
-use shading::{InstanceRecord, LightingRecord, MaterialRecord, SunRecord, SunsRecord};
+use shading::{
+    FogRecord, InstanceRecord, LightingRecord, MaterialRecord, ParticleRecord, SunRecord,
+    SunsRecord,
+};
 
 /// A shader that reads instances and materials.
 fn geometry() -> LinkedModule {
@@ -59,4 +62,24 @@ fn suns() {
     assert_eq!(lighting().layout_of("Suns"), rust, "WESL, then Rust");
     let rust = struct_layout!(SunRecord: to_sun, irradiance);
     assert_eq!(lighting().layout_of("Sun"), rust, "WESL, then Rust");
+}
+
+#[test]
+fn fog_and_particles() {
+    let shader = shading::lighting_shader().flag("captures", true).link("package::fog_light");
+    let fog = LinkedModule::new("fog", &shader.unwrap());
+    let rust = struct_layout!(FogRecord: counts, density, near_m, far_m, froxel_px, unused);
+    assert_eq!(fog.layout_of("Fog"), rust, "WESL, then Rust");
+    let shader = shading::lighting_shader().flag("captures", true).link("package::particles");
+    let particles = LinkedModule::new("particles", &shader.unwrap());
+    let rust = struct_layout!(ParticleRecord: center_world, radius_m, color, opacity);
+    assert_eq!(particles.layout_of("Particle"), rust, "WESL, then Rust");
+    assert_eq!(particles.strides_of("Particle"), [rust.bytes], "array stride");
+    // The pass that looks captured samples up reads what was captured.
+    let look_up = include_str!("../../assign/src/shaders/everything.wesl");
+    let shader = shading::lighting_shader().flag("captured", true);
+    let asked = shader.module("package::strategy", look_up).link("package::probe").unwrap();
+    let asked = LinkedModule::new("probe", &asked);
+    assert_eq!(asked.layout_of("CapturedSample"), particles.layout_of("CapturedSample"));
+    assert_eq!(asked.strides_of("CapturedSample"), [32]);
 }
