@@ -4,7 +4,7 @@ use assign::{Assignment, Passes, View, entry, storage_entry};
 
 use crate::{
     Renderer, ShadingError,
-    layers::{capture::CaptureBuffers, fog::FogVolume, order::Item, scene::LayerScene},
+    layers::{capture_buffers::CaptureBuffers, fog::FogVolume, order::Item, scene::LayerScene},
     lighting_inputs::LightingInputs,
     raster::{Lists, RasterPass, RasterPipelines, SheetPass, blended},
     shaders::{LISTS_GROUP, lighting_modules},

@@ -1,9 +1,7 @@
 //! The samples at which layers look lights up, for checks of lists on the CPU.
 
-use assign::{
-    AssignError, Assignment, EncoderPasses, Frame, Gpu, ListsSnapshot, Passes, entry, storage_entry,
-};
-use bytemuck::{cast_slice, pod_collect_to_vec};
+use assign::{Assignment, EncoderPasses, Frame, Gpu, ListsSnapshot, Passes};
+use bytemuck::pod_collect_to_vec;
 
 use crate::{
     Renderer, Samples, ShadingError,
@@ -11,43 +9,15 @@ use crate::{
     gbuffer_inputs::PIXELS_GROUP,
     layers::{
         blend::{Blend, Fragments},
+        capture_buffers::CaptureBuffers,
         fog::FogVolume,
     },
     probe::CAPTURED_BYTES,
     shaders::{LISTS_GROUP, lighting_modules},
 };
 
-/// Bindings of `capture.wesl` in group 2.
-const KEPT_BINDING: u32 = 22;
-const COUNT_BINDING: u32 = 23;
-
 /// The most samples that are kept of each kind, 128 MiB: of more, every second or third one is kept, and so on.
 const MOST_SAMPLES: u32 = 4 << 20;
-
-/// What a pass writes its samples to.
-#[derive(Debug)]
-pub(super) struct CaptureBuffers {
-    kept: wgpu::Buffer,
-    count: wgpu::Buffer,
-}
-
-impl CaptureBuffers {
-    fn new(gpu: &Gpu, room: u32, step: u32) -> Result<Self, AssignError> {
-        let count = gpu.storage("capture count", 8)?;
-        gpu.queue.write_buffer(&count, 0, cast_slice(&[0, step]));
-        // A shader's array has at least one element.
-        let kept = gpu.storage("captured samples", u64::from(room.max(1)) * CAPTURED_BYTES)?;
-        Ok(Self { kept, count })
-    }
-
-    pub(super) fn layout(stages: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 2] {
-        [KEPT_BINDING, COUNT_BINDING].map(|binding| storage_entry(binding, stages, false))
-    }
-
-    pub(super) fn entries(&self) -> [wgpu::BindGroupEntry<'_>; 2] {
-        [entry(KEPT_BINDING, &self.kept), entry(COUNT_BINDING, &self.count)]
-    }
-}
 
 /// The samples at which a frame's layers look lights up.
 #[derive(Clone, Debug, Default)]

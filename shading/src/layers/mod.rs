@@ -35,6 +35,7 @@
 
 mod blend;
 mod capture;
+mod capture_buffers;
 mod fog;
 mod fog_passes;
 mod options;

@@ -1,8 +1,8 @@
 //! The shaders of layers: transparent surfaces, particles, fog, and the checks of their lists.
 
 use super::{
-    Flags, LOOK_UPS, check_compute, check_geometry, link, material_flags, shaded_slots, subsets,
-    with_areas, with_suns,
+    Flags, LOOK_UPS, check_compute, check_geometry, link, shaded_slots, subsets, with_areas,
+    with_suns,
 };
 
 /// Which bindings of lighting a layer reads: it reads its numbers only for random ranges.
@@ -13,15 +13,17 @@ fn layer_inputs(flags: &Flags) -> [(u32, bool); 3] {
 
 #[test]
 fn transparent_surfaces() {
+    // Materials are those of the forward pass.
+    let more = ["emissive", "spots", "fogged", "base_color_texture"];
     for look_up in LOOK_UPS {
-        for flags in with_suns(material_flags(Some("sheets"), &["emissive", "spots", "fogged"])) {
+        for mut flags in with_suns(subsets(&more)) {
+            flags.insert("sheets");
             check_geometry(&flags, Some(look_up), Some("fragment_sheet"), shaded_slots(&flags));
         }
     }
-    for flags in material_flags(Some("sheets"), &["emissive"]) {
-        let flags = flags.into_iter().chain(["captures"]).collect();
-        // Only the normal is captured.
-        check_geometry(&flags, None, Some("fragment_sheet"), &[2]);
+    for mut flags in subsets(&["emissive", "normal_texture"]) {
+        flags.extend(["sheets", "captures"]);
+        check_geometry(&flags, None, Some("fragment_sheet"), &[0, 1, 2]);
     }
     let fogged = link("package::geometry", &["sheets", "fogged"].into(), Some(LOOK_UPS[0]));
     assert!(fogged.used(2).contains(&18) && fogged.used(2).contains(&17));
@@ -31,8 +33,10 @@ fn transparent_surfaces() {
 
 #[test]
 fn particles_and_fog() {
+    let mut sets = with_areas(subsets(&["spots"]));
+    sets.extend(subsets(&["fogged", "suns", "stochastic"]));
     for look_up in LOOK_UPS {
-        for flags in with_areas(subsets(&["spots", "fogged", "suns", "stochastic"])) {
+        for flags in sets.clone() {
             let check = |root: &str, always: &[u32]| {
                 let linked = link(root, &flags, Some(look_up));
                 let fogged = flags.contains("fogged") && root == "package::particles";
