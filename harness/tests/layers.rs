@@ -8,6 +8,7 @@ use harness::{
     cli::{Invocation, parse},
     compare::compare_on,
     error::HarnessError,
+    report::render_table,
     results::{LayerSetting, PassKind, Record, Results, is_raster_pass},
 };
 use serde_json::{Value, json};
@@ -189,8 +190,10 @@ fn options_without_effect_and_named_strategies_that_refuse_are_errors() {
         .expect_err("serves only surfaces");
     assert!(error.to_string().contains("look-ups at any depth"), "{error}");
     // Layers do not stay when the next run asks for none.
-    let fog = "--lights 5 --strategies None --pictures none";
+    let fog = "--lights 5 --strategies None,DC-I/32x32x8 --pictures none";
     let with = run(&mut bench, &plain, &format!("{fog} --fog 0.1")).expect("runs");
+    let page = render_table(&with);
+    assert!(page.contains("fog-light") && !page.contains("blend"), "{page}");
     let without = run(&mut bench, &plain, fog).expect("runs");
     assert!(with.records[0].times.passes.get("fog-light").is_some());
     assert!(without.records[0].times.passes.get("fog-light").is_none());
