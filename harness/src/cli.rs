@@ -63,8 +63,8 @@ image with no culling, and writes a report: DIR/index.html to read, DIR/results.
 const EXAMPLES: &str = "\
 Examples:
   lightbench
-      The embedded atrium with 1,000 lights: no culling without and with the early exit, dense clusters
-      and sparse clusters.
+      The embedded atrium with 1,000 lights: no culling without and with the early exit, dense
+      clusters and sparse clusters.
   lightbench --scene Sponza.gltf --lights 10000 --size 1920x1080 --mode both
       Your scene with its own lights and 10,000 more, deferred and forward.
   lightbench --strategies None,DC-I/128x128x64,DC-I/64x64x24,DC-I/32x32x32 --frames 32

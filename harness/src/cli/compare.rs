@@ -23,7 +23,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub stage: StageArgs,
 
-    /// Strategies to compare, separated by commas; `all` takes every one
+    /// Strategies to compare, separated by commas, or all
     ///
     /// `lightbench list strategies` lists all ids; `list engines` lists names like engine:bevy.
     #[arg(
@@ -153,7 +153,7 @@ const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
 /// Which pictures are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PicturesChoice {
-    /// Each method's image (PNG and linear EXR), its difference to no culling, and its heat map
+    /// Each method's image (PNG, linear EXR), its difference to no culling, its heat map
     All,
     /// No pictures; images are still compared
     None,
