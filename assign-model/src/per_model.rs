@@ -111,13 +111,8 @@ impl Assignment for PerModel {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        if frame.samples == SampleDomain::AnyDepth {
-            return Err(AssignError::Unsupported {
-                strategy: self.id(),
-                asked: "look-ups at any depth".into(),
-                reason: "a sample in the open lies on no model".into(),
-            });
-        }
+        let reason = "a sample in the open lies on no model";
+        frame.check_domain(&self.id(), SampleDomain::OpaqueSurfaces, reason)?;
         let missing = || AssignError::Missing { strategy: self.id(), missing: "models" };
         self.upload(gpu, frame.models.ok_or_else(missing)?)?;
         self.culler.prepare(

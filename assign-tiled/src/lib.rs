@@ -52,7 +52,9 @@
 //! - Smaller tiles do not help at a discontinuity. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!
-//! T-I serves look-ups at any depth. The others serve only opaque surfaces, and refuse any other look-up.
+//! T-I serves look-ups at any depth. The others serve opaque surfaces and, if the renderer asks for it, what lies in
+//! front of them: transparent surfaces and particles. Their tiles then begin at the near plane, and end where they
+//! end otherwise. They refuse any other look-up, such as that of fog.
 
 mod tile_bounds;
 mod tile_wesl;

@@ -2,15 +2,15 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
-    entry, storage_entry, uniform_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, SampleDomain,
+    StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
     tile_bounds::TileBounds,
     tile_wesl::tile_wesl,
-    tiles::{TileDepths, TileSize, TilesUniform},
+    tiles::{SURFACES_AND_FRONT, SURFACES_ONLY, TileDepths, TileSize, TilesUniform},
 };
 
 /// Tiles that each have a list of lights.
@@ -102,8 +102,11 @@ impl Assignment for Tiled {
         let mut tiles = TilesUniform::new(self.size, frame.view);
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
         if self.is_explicit() {
-            let depth = frame.surface_depth(&self.id())?;
-            tiles.surfaces_only = 1;
+            let depth = frame.covering_depth(&self.id())?;
+            tiles.surfaces_only = match frame.samples {
+                SampleDomain::InFront => SURFACES_AND_FRONT,
+                _ => SURFACES_ONLY,
+            };
             if let Some(tile_bounds) = &mut self.tile_bounds {
                 tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
                 resources.extend(tile_bounds.resources());

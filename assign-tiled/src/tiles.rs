@@ -101,6 +101,12 @@ impl From<Bounds> for TileDepths {
     }
 }
 
+/// [`TilesUniform::surfaces_only`] of lists that serve only surfaces.
+pub(crate) const SURFACES_ONLY: u32 = 1;
+
+/// [`TilesUniform::surfaces_only`] of lists that serve surfaces and what lies in front of them.
+pub(crate) const SURFACES_AND_FRONT: u32 = 2;
+
 /// The tiles as shaders read them: `struct Tiles` of `tiles.wesl`. 40 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -115,7 +121,8 @@ pub struct TilesUniform {
     pub near_m: f32,
     /// Greatest view depth of a sample, metres: the far plane, as shading rebuilds it, or [`UNBOUNDED`].
     pub far_m: f32,
-    /// 1: lists serve only the surfaces in the depth buffer. 0: lists serve any depth.
+    /// 1: lists serve only the surfaces in the depth buffer. 2: they also serve what lies in front of these. 0: lists
+    /// serve any depth.
     pub surfaces_only: u32,
     /// Pads to 40 bytes.
     pub padding: u32,

@@ -58,6 +58,21 @@ fn halves_and_slices_conform() {
     conforms(TileDepths::Sliced, "13x9", CullSettings { tests, source, ..CullSettings::default() });
 }
 
+/// Tiles whose ranges begin at the near plane hold the lights of what lies in front of surfaces.
+#[test]
+fn explicit_tiles_conform_in_front_of_surfaces() {
+    for depths in [
+        TileDepths::Explicit,
+        TileDepths::ExplicitAtOnce,
+        TileDepths::HalfZ,
+        TileDepths::ModifiedHalfZ,
+        TileDepths::Sliced,
+    ] {
+        let make = tiled(depths, "16x16", CullSettings::default());
+        conformance::run_in_front(&make).expect("conforms");
+    }
+}
+
 #[test]
 fn other_unions_of_tests_conform() {
     for union in ["hs", "sat-n+sat-p", "hs+sat-e+sat-p+sat-v"] {
@@ -91,6 +106,7 @@ fn only_explicit_tiles_refuse_look_ups_at_any_depth() {
     let any = frame.sampled_at(SampleDomain::AnyDepth);
     let mut strategy = tiled(Bounds::Implicit, "28x28", CullSettings::default())(&gpu).unwrap();
     strategy.prepare(&gpu, &any).unwrap();
+    strategy.prepare(&gpu, &frame.sampled_at(SampleDomain::InFront)).unwrap();
     let mut strategy = tiled(Bounds::Explicit, "28x28", CullSettings::default())(&gpu).unwrap();
     let refused = strategy.prepare(&gpu, &any).unwrap_err();
     assert!(matches!(refused, AssignError::Unsupported { .. }), "{refused}");

@@ -15,8 +15,22 @@ pub enum SampleDomain {
     /// Only at the opaque surfaces in the depth buffer.
     #[default]
     OpaqueSurfaces,
-    /// At any depth inside the view, as for transparent layers, volumes and particles.
+    /// At these surfaces, and at any depth between the near plane and the surface in the same pixel, as for
+    /// transparent surfaces and particles. In a pixel without a surface, at any depth.
+    InFront,
+    /// At any depth inside the view, also behind surfaces, as for fog whose froxels cover several pixels.
     AnyDepth,
+}
+
+impl SampleDomain {
+    /// What a renderer asks for, in words that follow "cannot serve".
+    fn words(self) -> &'static str {
+        match self {
+            Self::OpaqueSurfaces => "look-ups at opaque surfaces",
+            Self::InFront => "look-ups in front of opaque surfaces",
+            Self::AnyDepth => "look-ups at any depth",
+        }
+    }
 }
 
 /// What a strategy reads besides the view and the lights.
@@ -146,16 +160,52 @@ impl<'a> Frame<'a> {
     ///
     /// # Errors
     ///
+    /// [`AssignError::Unsupported`] if shading looks lists up at other depths, and [`AssignError::Missing`] without a
+    /// depth buffer.
+    pub fn surface_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
+        let reason = "its lists serve only the opaque surfaces in the depth buffer";
+        self.check_domain(strategy, SampleDomain::OpaqueSurfaces, reason)?;
+        self.some_depth(strategy)
+    }
+
+    /// The depth buffer, for a strategy that serves the surfaces in it and, if they are asked for, samples in front of
+    /// them ([`SampleDomain::InFront`]). `strategy` is its id.
+    ///
+    /// # Errors
+    ///
     /// [`AssignError::Unsupported`] if shading looks lists up at any depth, and [`AssignError::Missing`] without a depth
     /// buffer.
-    pub fn surface_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        if self.samples == SampleDomain::AnyDepth {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: "look-ups at any depth".into(),
-                reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
-            });
+    pub fn covering_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
+        if self.samples != SampleDomain::InFront {
+            let reason = "its lists serve only the opaque surfaces in the depth buffer and what lies in front of them";
+            self.check_domain(strategy, SampleDomain::OpaqueSurfaces, reason)?;
         }
+        self.some_depth(strategy)
+    }
+
+    /// Refuses look-ups at any depths but those of a domain. `strategy` is the id of what serves the domain, and `reason` says
+    /// why it serves no other.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] if shading looks lists up elsewhere.
+    pub fn check_domain(
+        &self,
+        strategy: &str,
+        served: SampleDomain,
+        reason: &str,
+    ) -> Result<(), AssignError> {
+        if self.samples == served {
+            return Ok(());
+        }
+        Err(AssignError::Unsupported {
+            strategy: strategy.into(),
+            asked: self.samples.words().into(),
+            reason: reason.into(),
+        })
+    }
+
+    fn some_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
         self.depth
             .ok_or_else(|| AssignError::Missing { strategy: strategy.into(), missing: "depth" })
     }

@@ -7,8 +7,8 @@ use laps::checked_poses;
 
 use assign::{Assignment, Counters, EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M};
 use shading::{
-    Cut, HdrImage, LightBvh, LightingOptions, ListsTruth, Mode, Operations, count_operations,
-    record_for_probe, visit_lists,
+    Cut, HdrImage, LayerSamples, LightBvh, LightingOptions, ListsTruth, Mode, Operations,
+    count_operations, record_for_probe, visit_layer_lists, visit_lists,
 };
 
 use crate::{
@@ -41,6 +41,8 @@ pub struct ListsFigures {
     pub truth: Option<ListsTruth>,
     /// The first missed pair of the truth.
     pub first_missed: Option<MissedPair>,
+    /// Of the samples of the truth, those of layers.
+    pub layer_samples: u64,
     /// How long the lists are that samples read; empty where the truth was not asked for.
     pub lengths: ListLengths,
     /// Light operations, where they were asked for.
@@ -357,6 +359,7 @@ fn count(
             Some(count_operations(renderer, strategy, &frame, options, exposure)?)
         }
     };
+    let mut layer_samples = 0;
     let truth = match truth {
         None => None,
         Some(bvh) => {
@@ -372,6 +375,19 @@ fn count(
                 &mut |samples, lists| {
                     lengths.add(samples, lists, pixels);
                     found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
+                },
+            )?;
+            let layers = LayerSamples::capture(renderer, &frame)?;
+            visit_layer_lists(
+                renderer,
+                strategy,
+                &frame,
+                &snapshot,
+                &layers,
+                &mut |samples, lists| {
+                    let checked = bvh.check(samples, lists, false);
+                    layer_samples += checked.samples;
+                    found = found.plus(checked);
                 },
             )?;
             Some(found)
@@ -390,6 +406,7 @@ fn count(
         memory_bytes: memory_bytes(stage, strategy, mode),
         first_missed: truth.and_then(|truth| truth.first_missed).map(|pair| place(stage, pair)),
         truth,
+        layer_samples,
         lengths,
         operations,
     })

@@ -5,15 +5,15 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CompareArgs, name_of},
+    cli::{CompareArgs, LayerArgs, name_of},
     clock::clock_of,
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
     moving::Moving,
     results::{
-        Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, WorstPixel,
-        mean,
+        Errors, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record, Setting,
+        Times, WorstPixel, mean,
     },
     schedule::rounds,
     stage::Stage,
@@ -151,6 +151,7 @@ pub fn record(
             compensation: args.compensate,
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
+            layers: layer_setting(&args.layers),
             motion: stage.moving.as_ref().map(Moving::setting),
         },
         times: Times {
@@ -183,6 +184,7 @@ pub fn record(
             first_missed: lists.first_missed,
             checked_pairs: truth.map(|t| t.contributing),
             samples: truth.map_or(0, |t| t.samples),
+            layer_samples: (lists.layer_samples > 0).then_some(lists.layer_samples),
             untested: None,
             list_bytes: lists.bytes,
             assignment_bytes: has_lists.then_some(lists.memory_bytes),
@@ -207,6 +209,15 @@ pub fn record(
     };
     record.set_times();
     record
+}
+
+/// What is drawn over the opaque surfaces; `None` if nothing is.
+fn layer_setting(args: &LayerArgs) -> Option<LayerSetting> {
+    (*args != LayerArgs::default()).then(|| LayerSetting {
+        transparent: args.transparent,
+        particles: args.particles.into(),
+        fog_per_m: args.fog,
+    })
 }
 
 /// Whether a method that rounds in its own way may gain or lose a light at the edge of its range, where

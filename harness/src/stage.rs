@@ -2,12 +2,12 @@
 
 use assign::{Gpu, LightBuffer, LightKind, RejectedLight, Suns, View};
 use glam::DVec3;
-use scenes::{Aabb, Dielectric, Pose, Scene, primary_light};
-use shading::{AreaModel, Renderer};
+use scenes::{Aabb, Dielectric, Material, Pose, Scene, primary_light, scatter_particles};
+use shading::{AreaModel, LayerOptions, Renderer};
 
 use crate::{
     camera,
-    cli::StageArgs,
+    cli::{CliError, LayerArgs, StageArgs},
     error::HarnessError,
     moving::{Moving, kinds_of},
     open_lights::OpenLights,
@@ -190,6 +190,25 @@ impl Stage {
         (self.vpls, self.faulty_vpls) = (Some(figures), faulty);
         self.note_vpls();
         Ok(())
+    }
+
+    /// Sets what is drawn over the opaque surfaces. Particles are scattered where lights are by default.
+    pub fn show_layers(&mut self, args: &LayerArgs, seed: u64) -> Result<(), HarnessError> {
+        let options = LayerOptions {
+            sheets: args.transparent,
+            particles: match args.particles {
+                // A scene without triangles has no room, and needs none.
+                0 => Vec::new(),
+                count => scatter_particles(count, seed, self.scene.core_bounds)?,
+            },
+            fog_per_m: args.fog.map(|density| density as f32),
+        };
+        if options.sheets && !self.scene.materials.iter().any(Material::is_transparent) {
+            let accepted = "left out, because no material of the scene is transparent (alphaMode BLEND or \
+                            KHR_materials_transmission)";
+            return Err(CliError::out_of_range("--transparent", "given", accepted).into());
+        }
+        Ok(self.renderer.show_layers(&options)?)
     }
 
     /// Uploads the camera, untimed, and binds the lights.

@@ -48,7 +48,9 @@ fn args_of(arguments: &[&str]) -> ExplainArgs {
 /// A strategy with a fault in it, or without.
 fn method_of(bench: &Bench, id: &str, fault: Option<Fault>) -> Method {
     let method = Choice::parse(id).expect("an id").make(bench.gpu()).expect("made");
-    let Method::Lists { mut strategy, early_exit, stochastic, is_random } = method else { panic!("{id}") };
+    let Method::Lists { mut strategy, early_exit, stochastic, is_random } = method else {
+        panic!("{id}")
+    };
     if let Some(fault) = fault {
         strategy = Box::new(Faulty::new(bench.gpu(), strategy, fault).expect("planted"));
     }

@@ -4,7 +4,7 @@ use assign::{DepthMapping, LightShape};
 use blake3::Hasher;
 use glam::Vec3;
 
-use crate::{Dielectric, Encoding, Framing, Lens, Pose, Scene, TextureRef};
+use crate::{Dielectric, Encoding, Framing, Lens, Material, Pose, Scene, TextureRef};
 
 /// Increases whenever the values in the hash, or their order, change.
 const VERSION: u32 = 1;
@@ -167,6 +167,13 @@ impl Scene {
                 feed.floats(&[material.dielectric.f90]);
             }
         }
+        if self.materials.iter().any(Material::is_transparent) {
+            feed.int(TRANSPARENT);
+            for material in &self.materials {
+                feed.int(u64::from(material.is_blended));
+                feed.floats(&[material.transmission]);
+            }
+        }
         if !self.suns.is_empty() {
             feed.int(SUNS);
         }
@@ -214,6 +221,7 @@ const SUNS: u64 = 0x7375_6e73;
 const LIGHT_ANIMATION: u64 = 0x616e_696d_6174_6564;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
 const FRAMINGS: u64 = 0x6672_616d_696e_6773;
+const TRANSPARENT: u64 = 0x0067_6c61_7373;
 
 #[cfg(test)]
 mod tests {

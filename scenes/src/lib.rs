@@ -28,6 +28,7 @@ mod motion;
 mod nearest;
 mod noise;
 mod open_ranges;
+mod particles;
 mod path;
 mod picture;
 mod places;
@@ -56,6 +57,7 @@ pub use motion::{
 };
 pub use nearest::DepthSpan;
 pub use open_ranges::{LOST, close_ranges};
+pub use particles::{MAX_PARTICLES, Particle, scatter_particles};
 pub use path::CameraPath;
 pub use places::Places;
 pub use pose::Pose;

@@ -20,6 +20,12 @@ pub struct Material {
     pub normal_scale: f32,
     /// The opacity below which nothing is drawn; `None` is opaque.
     pub alpha_cutoff: Option<f32>,
+    /// Whether a renderer of transparent surfaces blends it by its opacity (glTF's `alphaMode` BLEND). Other
+    /// renderers draw it by [`alpha_cutoff`](Self::alpha_cutoff).
+    pub is_blended: bool,
+    /// The share of light that its dielectric part lets through instead of scattering it, 0..=1
+    /// (KHR_materials_transmission). Only a renderer of transparent surfaces shows it.
+    pub transmission: f32,
     /// Whether back faces are drawn, with the normal turned to the viewer.
     pub double_sided: bool,
     /// Base colour and opacity, sRGB.
@@ -69,6 +75,8 @@ impl Default for Material {
             emissive: Vec3::ZERO,
             normal_scale: 1.0,
             alpha_cutoff: None,
+            is_blended: false,
+            transmission: 0.0,
             double_sided: false,
             base_color_texture: None,
             metallic_roughness_texture: None,
@@ -81,6 +89,11 @@ impl Default for Material {
 }
 
 impl Material {
+    /// Whether a renderer of transparent surfaces shows what lies behind it.
+    pub fn is_transparent(&self) -> bool {
+        self.is_blended || self.transmission > 0.0
+    }
+
     /// Its textures: base colour, metallic-roughness, normal, emissive.
     pub fn textures(&self) -> [Option<&TextureRef>; 4] {
         [

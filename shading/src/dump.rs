@@ -7,7 +7,7 @@ use crate::{
     Renderer, Samples, ShadingError,
     gbuffer_inputs::GBufferInputs,
     pixel_pass::PixelPass,
-    probe,
+    probe::{ask_captured, probe_at},
     shaders::{LISTS_GROUP, lighting_modules},
 };
 
@@ -41,12 +41,34 @@ pub fn visit_lists(
     is_forward: bool,
     visit: &mut dyn FnMut(&Samples, &ListsSnapshot),
 ) -> Result<(), ShadingError> {
-    let samples = probe(renderer, strategy, frame)?;
+    let asked = Asked { captured: None, is_alone: is_forward };
+    visit_lists_at(renderer, strategy, frame, snapshot, asked, visit)
+}
+
+/// Which samples are looked up, and how.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    /// Captured samples, at most one per pixel; `None`: those of the pixels.
+    pub(crate) captured: Option<&'a wgpu::Buffer>,
+    /// Whether each sample looks its lights up for itself.
+    pub(crate) is_alone: bool,
+}
+
+/// As [`visit_lists`], for any samples.
+pub(crate) fn visit_lists_at(
+    renderer: &Renderer,
+    strategy: &dyn Assignment,
+    frame: &Frame<'_>,
+    snapshot: &ListsSnapshot,
+    asked: Asked<'_>,
+    visit: &mut dyn FnMut(&Samples, &ListsSnapshot),
+) -> Result<(), ShadingError> {
+    let samples = probe_at(renderer, strategy, frame, asked.captured)?;
     if !strategy.lookup().is_per_sample() {
         visit(&samples, snapshot);
         return Ok(());
     }
-    let dump = Dump { renderer, strategy, frame, is_forward };
+    let dump = Dump { renderer, strategy, frame, asked };
     let counts = dump.counts()?;
     let length = |pixel: u32| counts.get(pixel as usize).map_or(0, |&count| count as usize);
     let mut next = 0;
@@ -89,7 +111,8 @@ pub fn list_of_pixel(
     pixel: u32,
     is_forward: bool,
 ) -> Result<Vec<u32>, ShadingError> {
-    let dump = Dump { renderer, strategy, frame, is_forward };
+    let asked = Asked { is_alone: is_forward, captured: None };
+    let dump = Dump { renderer, strategy, frame, asked };
     let counts = dump.counts()?;
     dump.entries(&counts, &[pixel])
 }
@@ -99,7 +122,7 @@ struct Dump<'a> {
     renderer: &'a Renderer,
     strategy: &'a dyn Assignment,
     frame: &'a Frame<'a>,
-    is_forward: bool,
+    asked: Asked<'a>,
 }
 
 impl Dump<'_> {
@@ -133,7 +156,7 @@ impl Dump<'_> {
     /// Looks every pixel up: the number of entries of each, and the entries of those that have places for them.
     /// Each call runs the same shader, so that lanes work together in the same way.
     fn run(&self, places: &[u32]) -> Result<(Vec<u32>, Vec<u32>), ShadingError> {
-        let Self { renderer, strategy, frame, is_forward } = *self;
+        let Self { renderer, strategy, frame, asked } = *self;
         let gpu = &renderer.gpu;
         let place_buffer = gpu.storage("places", size_of_val(places) as u64)?;
         gpu.queue.write_buffer(&place_buffer, 0, cast_slice(places));
@@ -143,7 +166,7 @@ impl Dump<'_> {
         let counts = gpu.storage("entries per pixel", count_bytes)?;
         let stages = wgpu::ShaderStages::COMPUTE;
         let shader = lighting_modules(LISTS_GROUP).light_kinds(frame.lights.kinds());
-        let pass = PixelPass {
+        let mut pass = PixelPass {
             name: "dump",
             entry_point: "look_up",
             shader,
@@ -159,9 +182,10 @@ impl Dump<'_> {
                 entry(DUMPED_BINDING, &dumped),
             ],
             strategy: Some(strategy),
-            is_alone: is_forward,
+            is_alone: asked.is_alone,
             bounds: None,
         };
+        ask_captured(&mut pass, asked.captured);
         pass.submit(renderer, frame.view.viewport)?;
         Ok((
             pod_collect_to_vec(&gpu.read(&counts, count_bytes)?),

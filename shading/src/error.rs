@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use assign::{AssignError, LightKinds};
 use thiserror::Error;
 
+use crate::layers::LayerKinds;
+
 /// Why a scene cannot be drawn, or an image not written.
 #[derive(Debug, Error)]
 pub enum ShadingError {
@@ -59,6 +61,16 @@ pub enum ShadingError {
          alike: create a new pass"
     )]
     Orientation,
+    /// The renderer draws other layers than those for which the lighting pass was compiled.
+    #[error(
+        "the lighting pass was compiled for {made:?}, but the renderer draws {drawn:?}: create a new pass"
+    )]
+    Layers {
+        /// The layers that the pass was compiled for.
+        made: LayerKinds,
+        /// The layers of the renderer.
+        drawn: LayerKinds,
+    },
     /// A sample's look-up returned another number of lights than before.
     #[error(
         "two look-ups of the same frame returned different lights: {strategy} must return the same"

@@ -2,7 +2,7 @@
 
 use assign::{AssignError, Gpu, entry, storage_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
-use glam::Mat3;
+use glam::{Mat3, Vec3};
 use scenes::{Instance, Model, Scene, Vertex};
 use wgpu::util::DeviceExt;
 
@@ -42,6 +42,16 @@ pub(crate) struct Draw {
     pub(crate) base_vertex: i32,
     pub(crate) first_instance: u32,
     pub(crate) instance_count: u32,
+    /// Whether its material is transparent.
+    pub(crate) is_transparent: bool,
+}
+
+/// A transparent surface: one instance of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sheet {
+    pub(crate) draw: Draw,
+    /// The centre of the box around it, world space.
+    pub(crate) center_world: Vec3,
 }
 
 /// The properties of a draw that decide its pipeline.
@@ -59,6 +69,8 @@ pub struct SceneGpu {
     /// Colours of all vertices, if any mesh has colours.
     colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
+    /// Its transparent surfaces.
+    pub(crate) sheets: Vec<Sheet>,
     pub(crate) materials: Materials,
     /// Layouts of bind group 2, one for each of [`Bound::ALL`].
     layouts: [wgpu::BindGroupLayout; 4],
@@ -70,7 +82,7 @@ impl SceneGpu {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, ShadingError> {
         let materials = Materials::new(gpu, scene)?;
         let (ranges, vertex_bytes, index_bytes) = concatenate(scene);
-        let (records, draws) = plan(scene, &materials, &ranges);
+        let (records, draws, sheets) = plan(scene, &materials, &ranges);
         let buffer = |label: &str, bytes: &[u8], usage| {
             check_size(gpu, label, bytes.len() as u64, usage)?;
             let descriptor =
@@ -98,7 +110,7 @@ impl SceneGpu {
             })
         };
         let layouts = Bound::ALL.map(layout);
-        Ok(Self { vertices, indices, colors, draws, materials, layouts, instances })
+        Ok(Self { vertices, indices, colors, draws, sheets, materials, layouts, instances })
     }
 
     /// Layout of bind group 2.
@@ -134,26 +146,49 @@ impl SceneGpu {
 
     /// The keys of all pipelines that its draws need.
     pub(crate) fn keys(&self) -> Vec<DrawKey> {
-        let mut keys: Vec<DrawKey> = self.draws.iter().map(|draw| draw.key).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        keys
+        unique(self.draws.iter())
     }
 
-    /// Issues all draws, sorted by pipeline. `pipeline` looks up a pipeline.
-    pub(crate) fn draw<'a>(
-        &'a self,
-        pass: &mut wgpu::RenderPass<'_>,
-        textures: bool,
-        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
-    ) {
+    /// The keys of all pipelines that its transparent surfaces need.
+    pub(crate) fn sheet_keys(&self) -> Vec<DrawKey> {
+        unique(self.draws.iter().filter(|draw| draw.is_transparent))
+    }
+
+    /// Binds the buffers of vertices and indices.
+    fn bind_vertices(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         if let Some(colors) = &self.colors {
             pass.set_vertex_buffer(1, colors.slice(..));
         }
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+
+    /// Draws a transparent surface, with the textures of its material.
+    pub(crate) fn draw_sheet(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        Sheet { draw, .. }: &Sheet,
+        pipeline: &wgpu::RenderPipeline,
+    ) {
+        self.bind_vertices(pass);
+        pass.set_pipeline(pipeline);
+        if let Some(group) = self.materials.bind_group(draw.material) {
+            pass.set_bind_group(3, group, &[]);
+        }
+        draw.issue(pass);
+    }
+
+    /// Issues all draws, or only those of opaque surfaces, sorted by pipeline. `pipeline` looks up a pipeline.
+    pub(crate) fn draw<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        textures: bool,
+        only_opaque: bool,
+        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
+    ) {
+        self.bind_vertices(pass);
         let mut bound = (None, None);
-        for draw in &self.draws {
+        for draw in self.draws.iter().filter(|draw| !(only_opaque && draw.is_transparent)) {
             let Some(pipeline) = pipeline(draw.key) else {
                 continue;
             };
@@ -167,13 +202,25 @@ impl SceneGpu {
                 pass.set_bind_group(3, group, &[]);
             }
             bound = (Some(draw.key), Some(draw.material));
-            let end = draw.first_index + draw.index_count;
-            pass.draw_indexed(
-                draw.first_index..end,
-                draw.base_vertex,
-                draw.first_instance..draw.first_instance + draw.instance_count,
-            );
+            draw.issue(pass);
         }
+    }
+}
+
+fn unique<'a>(draws: impl Iterator<Item = &'a Draw>) -> Vec<DrawKey> {
+    let mut keys: Vec<DrawKey> = draws.map(|draw| draw.key).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys
+}
+
+impl Draw {
+    fn issue(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.draw_indexed(
+            self.first_index..self.first_index + self.index_count,
+            self.base_vertex,
+            self.first_instance..self.first_instance + self.instance_count,
+        );
     }
 }
 
@@ -237,12 +284,12 @@ fn colors(scene: &Scene) -> Vec<[f32; 4]> {
     scene.meshes.iter().flat_map(of_mesh).collect()
 }
 
-/// Instances sorted by pipeline, material and mesh, and one draw for each run of one mesh.
+/// Instances sorted by pipeline, material and mesh; one draw for each run of one mesh; and the transparent surfaces.
 fn plan(
     scene: &Scene,
     materials: &Materials,
     ranges: &[MeshRange],
-) -> (Vec<InstanceRecord>, Vec<Draw>) {
+) -> (Vec<InstanceRecord>, Vec<Draw>, Vec<Sheet>) {
     let mut order: Vec<(DrawKey, u32, &Instance)> = scene
         .instances
         .iter()
@@ -264,12 +311,12 @@ fn plan(
             record(&scene.models[instance.model as usize], instance.model, *material)
         })
         .collect();
-    let mut draws = Vec::new();
+    let (mut draws, mut sheets) = (Vec::new(), Vec::new());
     let mut first = 0;
     for run in order.chunk_by(|a, b| a.0 == b.0 && a.1 == b.1 && a.2.mesh == b.2.mesh) {
         let (key, material, instance) = run[0];
         let range = ranges[instance.mesh as usize];
-        draws.push(Draw {
+        let draw = Draw {
             key,
             material,
             first_index: range.first_index,
@@ -277,10 +324,22 @@ fn plan(
             base_vertex: range.base_vertex,
             first_instance: first,
             instance_count: run.len() as u32,
-        });
+            is_transparent: scene.materials[material as usize].is_transparent(),
+        };
+        draws.push(draw);
+        if draw.is_transparent {
+            let bounds = scene.meshes[instance.mesh as usize].bounds;
+            sheets.extend((first..).zip(run).map(|(first_instance, (.., instance))| {
+                let placed = scene.models[instance.model as usize].object_to_world;
+                Sheet {
+                    draw: Draw { first_instance, instance_count: 1, ..draw },
+                    center_world: placed.transform_point3(bounds.center()),
+                }
+            }));
+        }
         first += run.len() as u32;
     }
-    (records, draws)
+    (records, draws, sheets)
 }
 
 pub(crate) fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {

@@ -11,6 +11,7 @@
 //! | the strategy's passes | all | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
+//! | `fog-light`, `fog-sum`, `fog-apply`, `blend` | all, with [`LayerOptions`] | depth, lists, lights | fog, transparent surfaces and particles over radiance |
 //!
 //! All modes call the one lighting function in `lighting.wesl`. All modes find a sample from pixel
 //! and depth by `sample_at`, so a strategy assigns it to the same group. Only features that a scene
@@ -27,6 +28,7 @@ mod gbuffer_inputs;
 mod geometry;
 mod heat_map;
 mod image;
+mod layers;
 mod lighting;
 mod lighting_inputs;
 mod lighting_options;
@@ -58,6 +60,10 @@ pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
+pub use layers::{
+    FogRecord, LayerKinds, LayerOptions, LayerSamples, MAX_FOG_PER_M, MIN_FOG_PER_M,
+    ParticleRecord, visit_layer_lists,
+};
 pub use lighting::Lighting;
 pub use lighting_inputs::{LightingRecord, SunRecord, SunsRecord};
 pub use lighting_options::{Cut, LightingOptions};

@@ -5,6 +5,7 @@ use assign::{AssignError, Assignment, Gpu, Passes, View, texture};
 use crate::{
     LightingOptions, Mode, Renderer, ShadingError,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
+    layers::LayerPasses,
     lighting_inputs::{Bound, LightingInputs},
     raster::{Lists, Orientation, RasterPass, RasterPipelines},
     shaders::{LISTS_GROUP, lighting_modules},
@@ -14,10 +15,12 @@ use crate::{
 /// The binding in [`PIXELS_GROUP`] of the image that deferred lighting writes.
 const RADIANCE_BINDING: u32 = 4;
 
-/// The lighting pass of one strategy and mode. It is recorded as the pass `shade`.
+/// The lighting pass of one strategy and mode. It is recorded as the pass `shade`, followed by those of the layers
+/// that the renderer draws.
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
+    layers: Option<LayerPasses>,
     options: LightingOptions,
 }
 
@@ -38,7 +41,8 @@ struct Forward {
 
 impl Lighting {
     /// Compiles the strategy's look-up into the pipeline's shader. The pass is for the renderer's
-    /// present view: another direction of depth, or a view that is mirrored, needs a new pass.
+    /// present view and layers: another direction of depth, a view that is mirrored, and other layers need a new
+    /// pass.
     pub fn new(
         renderer: &Renderer,
         strategy: &dyn Assignment,
@@ -95,7 +99,11 @@ impl Lighting {
                 Kind::Forward(Forward { pipelines, orientation, scene, has_depth })
             }
         };
-        Ok(Self { kind, options })
+        let layers = match &renderer.layers {
+            Some(layers) => Some(LayerPasses::new(renderer, layers, lists)?),
+            None => None,
+        };
+        Ok(Self { kind, layers, options })
     }
 
     /// The options with which it was created.
@@ -103,8 +111,9 @@ impl Lighting {
         self.options
     }
 
-    /// Records the pass `shade`, after the strategy's own passes. Returns an error if the prepared
-    /// lights are of a kind for which the shader was not compiled, or if depth or winding are.
+    /// Records the pass `shade`, after the strategy's own passes, and those of layers. Returns an error if the
+    /// prepared lights or the renderer's layers are of a kind for which the shader was not compiled, or if depth or
+    /// winding are.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -117,6 +126,10 @@ impl Lighting {
         if !made.cover(lights.kinds) {
             return Err(ShadingError::Kinds { made, lights: lights.kinds });
         }
+        let made = self.layers.as_ref().map(LayerPasses::kinds).unwrap_or_default();
+        if made != renderer.layer_kinds() {
+            return Err(ShadingError::Layers { made, drawn: renderer.layer_kinds() });
+        }
         lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
@@ -127,6 +140,9 @@ impl Lighting {
                 let groups = (strategy.bind_group(), scene);
                 renderer.record_radiance(("shade", *has_depth), view, pipelines, groups, passes);
             }
+        }
+        if let (Some(layers), Some(scene)) = (&self.layers, &renderer.layers) {
+            layers.record(renderer, scene, view, strategy, passes);
         }
         Ok(())
     }

@@ -25,8 +25,8 @@ pub struct MaterialRecord {
     pub normal_scale: f32,
     /// Alpha below which a fragment is discarded.
     pub alpha_cutoff: f32,
-    /// Pads to 16 bytes.
-    pub unused: f32,
+    /// The share of light that the dielectric share lets through.
+    pub transmission: f32,
     /// What the dielectric share reflects at normal incidence, and at grazing incidence.
     pub dielectric: [f32; 4],
     /// Rows of each texture's uv transform.
@@ -141,7 +141,7 @@ fn record(material: &Material) -> MaterialRecord {
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
-        unused: 0.0,
+        transmission: material.transmission,
         dielectric: material.dielectric.f0.extend(material.dielectric.f90).to_array(),
         uv_transforms,
     }

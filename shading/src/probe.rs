@@ -14,6 +14,12 @@ use crate::{
 const SEEN_BINDING: u32 = 8;
 const GROUPS_BINDING: u32 = 9;
 
+/// Binding of captured samples in `asked.wesl`.
+const CAPTURED_BINDING: u32 = 24;
+
+/// Bytes of `struct CapturedSample` of `capture.wesl`.
+pub(crate) const CAPTURED_BYTES: u64 = 32;
+
 /// The view samples of a frame, and the group of each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
@@ -23,7 +29,8 @@ pub struct Samples {
     pub normals: Vec<[f32; 3]>,
     /// The group of each sample.
     pub groups: Vec<u32>,
-    /// The pixel of each sample: an index into the viewport, rows from the top.
+    /// The pixel of each sample: an index into the viewport, rows from the top. Captured samples have places in
+    /// their buffer instead.
     pub pixels: Vec<u32>,
 }
 
@@ -50,12 +57,31 @@ pub fn probe(
     strategy: &dyn Assignment,
     frame: &Frame<'_>,
 ) -> Result<Samples, ShadingError> {
+    probe_at(renderer, strategy, frame, None)
+}
+
+/// Has a pass look captured samples up, instead of those of pixels.
+pub(crate) fn ask_captured<'a>(pass: &mut PixelPass<'a>, captured: Option<&'a wgpu::Buffer>) {
+    let Some(captured) = captured else { return };
+    let stages = wgpu::ShaderStages::COMPUTE;
+    pass.shader = pass.shader.clone().flag("captured", true);
+    pass.layout.push(storage_entry(CAPTURED_BINDING, stages, true));
+    pass.resources.push(entry(CAPTURED_BINDING, captured));
+}
+
+/// The same for captured samples, if there are any: at most one per pixel.
+pub(crate) fn probe_at(
+    renderer: &Renderer,
+    strategy: &dyn Assignment,
+    frame: &Frame<'_>,
+    captured: Option<&wgpu::Buffer>,
+) -> Result<Samples, ShadingError> {
     let gpu = &renderer.gpu;
     let pixels = u64::from(frame.view.viewport.width) * u64::from(frame.view.viewport.height);
     let seen = gpu.storage("probe samples", pixels * 32)?;
     let groups = gpu.storage("probe groups", pixels * 4)?;
     let stages = wgpu::ShaderStages::COMPUTE;
-    let pass = PixelPass {
+    let mut pass = PixelPass {
         name: "probe",
         entry_point: "probe",
         shader: lighting_modules(LISTS_GROUP),
@@ -69,6 +95,7 @@ pub fn probe(
         is_alone: false,
         bounds: None,
     };
+    ask_captured(&mut pass, captured);
     pass.submit(renderer, frame.view.viewport)?;
     let seen: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&seen, pixels * 32)?);
     let groups: Vec<u32> = pod_collect_to_vec(&gpu.read(&groups, pixels * 4)?);

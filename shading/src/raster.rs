@@ -37,8 +37,21 @@ pub(crate) enum RasterPass<'a> {
         /// the pass tests and writes depth.
         has_depth: bool,
     },
+    /// Transparent surfaces, blended where no opaque surface is nearer.
+    Sheets(SheetPass<'a>),
     /// The control without lights, drawn where the depth is equal.
     Clay,
+}
+
+/// The shader and the bindings of a pass over transparent surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SheetPass<'a> {
+    /// The strategy's look-up and the options of lighting. `None`: samples are captured, and the image stays.
+    pub(crate) lists: Option<Lists<'a>>,
+    /// Layout of bind group 2.
+    pub(crate) layout: &'a wgpu::BindGroupLayout,
+    /// Whether there is fog.
+    pub(crate) fogged: bool,
 }
 
 impl RasterPass<'_> {
@@ -46,6 +59,34 @@ impl RasterPass<'_> {
     /// depth is equal.
     fn writes_depth(self) -> bool {
         matches!(self, Self::Depth | Self::Forward { has_depth: false, .. })
+    }
+
+    /// The depth at which fragments are drawn.
+    fn depth_compare(self, depth: DepthMapping) -> wgpu::CompareFunction {
+        match depth {
+            _ if !self.writes_depth() && !matches!(self, Self::Sheets(_)) => {
+                wgpu::CompareFunction::Equal
+            }
+            DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
+            DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
+        }
+    }
+
+    /// How fragments change the image.
+    fn color_target(self, format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+        match self {
+            Self::Sheets(SheetPass { lists, .. }) => blended(lists.is_some()),
+            _ => format.into(),
+        }
+    }
+}
+
+/// Radiance over what is there. Alpha is the share of it that a fragment hides. Without `is_lit`, the image stays.
+pub(crate) fn blended(is_lit: bool) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState {
+        format: RADIANCE_FORMAT,
+        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        write_mask: if is_lit { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::empty() },
     }
 }
 
@@ -86,7 +127,11 @@ impl RasterPipelines {
         pass: RasterPass<'_>,
     ) -> Result<Self, ShadingError> {
         let mut pipelines = HashMap::new();
-        for key in scene.keys() {
+        let keys = match pass {
+            RasterPass::Sheets(_) => scene.sheet_keys(),
+            _ => scene.keys(),
+        };
+        for key in keys {
             pipelines.insert(key, pipeline(gpu, frame, scene, orientation, pass, key)?);
         }
         Ok(Self { pipelines })
@@ -119,13 +164,15 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         RasterPass::Forward { .. } => wanted == "forward",
         RasterPass::Clay => wanted == "clay",
         RasterPass::ModelIds => wanted == "write_model_ids",
+        RasterPass::Sheets(_) => wanted == "sheets",
     };
-    let shades = is("gbuffer") || is("forward");
+    let shades = is("gbuffer") || is("forward") || is("sheets");
     let mut shader = lighting_modules(LISTS_GROUP)
         .flag("gbuffer", is("gbuffer"))
         .flag("forward", is("forward"))
         .flag("clay", is("clay"))
         .flag("write_model_ids", is("write_model_ids"))
+        .flag("sheets", is("sheets"))
         .flag("mask", is("depth") && material.mask)
         .flag("forward_mask", pass.writes_depth() && is("forward") && material.mask)
         .flag("gbuffer_ids", matches!(pass, RasterPass::GBuffer { ids: true }))
@@ -137,7 +184,16 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
     for (slot, flag) in TEXTURE_FLAGS.into_iter().enumerate() {
         shader = shader.flag(flag, material.textures[slot]);
     }
-    if let RasterPass::Forward { lists, .. } = pass {
+    let lists = match pass {
+        RasterPass::Forward { lists, .. } => Some(lists),
+        RasterPass::Sheets(SheetPass { lists, fogged, .. }) => {
+            let captures = lists.is_none();
+            shader = shader.flag("captures", captures).flag("fogged", fogged && !captures);
+            lists
+        }
+        _ => None,
+    };
+    if let Some(lists) = lists {
         shader = lists.options.set_flags(shader).strategy(lists.lookup.module).without_subgroups();
     }
     shader
@@ -153,18 +209,22 @@ fn pipeline(
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
     let shown = Shown::from_scene(scene);
     let shader = shader(pass, key, shown);
-    // SAFETY: forward lighting's loops count up to the number of suns, or end with the strategy's look-up,
+    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, or end with the strategy's look-up,
     // which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign`
     // do, and the strategy's author guarantees it of its own.
     // The other passes have no loop.
     #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, shown);
-    let (lists, bound) = match pass {
-        RasterPass::Forward { lists, .. } => (Some(lists.lookup.layout), lists.options.bound()),
-        _ => (None, Bound { table: false, suns: false }),
+    let (lists, scene_layout) = match pass {
+        RasterPass::Forward { lists, .. } => {
+            (Some(lists.lookup.layout), scene.layout(lists.options.bound()))
+        }
+        RasterPass::Sheets(SheetPass { lists, layout, .. }) => {
+            (lists.map(|lists| lists.lookup.layout), layout)
+        }
+        _ => (None, scene.layout(Bound { table: false, suns: false })),
     };
-    let scene_layout = scene.layout(bound);
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
@@ -173,13 +233,8 @@ fn pipeline(
     });
     let without_colors = [Some(vertex_layout())];
     let with_colors = [Some(vertex_layout()), Some(color_layout())];
-    let is_depth = pass.writes_depth();
-    let nearer = match orientation.depth {
-        DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
-        DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
-    };
     let targets: Vec<Option<wgpu::ColorTargetState>> =
-        formats.into_iter().map(|format| format.map(Into::into)).collect();
+        formats.into_iter().map(|format| Some(pass.color_target(format?))).collect();
     Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -200,8 +255,8 @@ fn pipeline(
         },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
-            depth_write_enabled: Some(is_depth),
-            depth_compare: Some(if is_depth { nearer } else { wgpu::CompareFunction::Equal }),
+            depth_write_enabled: Some(pass.writes_depth()),
+            depth_compare: Some(pass.depth_compare(orientation.depth)),
             stencil: Default::default(),
             bias: Default::default(),
         }),
@@ -235,6 +290,9 @@ fn entry_points(
         }
         RasterPass::Forward { .. } => {
             ("vertex_surface", Some("fragment_forward"), vec![Some(RADIANCE_FORMAT)])
+        }
+        RasterPass::Sheets(_) => {
+            ("vertex_surface", Some("fragment_sheet"), vec![Some(RADIANCE_FORMAT)])
         }
         RasterPass::ModelIds => {
             ("vertex_surface", Some("fragment_model_ids"), vec![Some(MODEL_FORMAT)])

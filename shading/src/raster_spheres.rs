@@ -42,7 +42,8 @@ pub struct RasterSpheres {
 }
 
 impl RasterSpheres {
-    /// Creates the pipelines. Returns an error if the device cannot blend into single precision.
+    /// Creates the pipelines. Returns an error if the device cannot blend into single precision, or if the renderer
+    /// draws layers.
     ///
     /// With [`Cut::Hard`] a light ends abruptly. If this shader rounds differently from that of no
     /// culling, a sample at the very edge of a range gains or loses the light's whole share.
@@ -55,6 +56,14 @@ impl RasterSpheres {
     ) -> Result<Self, ShadingError> {
         let options = LightingOptions { kinds, area, cut, suns, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
+        if renderer.layers.is_some() {
+            return Err(AssignError::Unsupported {
+                strategy: "RasterSphere".into(),
+                asked: "layers over the opaque surfaces".into(),
+                reason: "its volumes light only the opaque surfaces in the depth buffer".into(),
+            }
+            .into());
+        }
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
                 strategy: "RasterSphere".into(),

@@ -1,12 +1,15 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
-use assign::{AssignError, Assignment, Frame, FrameBindings, Gpu, ModelBox, Passes, View};
+use assign::{
+    AssignError, Assignment, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, View,
+};
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
 
 use crate::{
     LightingOptions, Mode, ShadingError,
     geometry::SceneGpu,
+    layers::{LayerKinds, LayerOptions, LayerScene},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
     raster::{Orientation, RasterPass, RasterPipelines},
@@ -30,6 +33,8 @@ pub struct Renderer {
     models: Vec<ModelBox>,
     surface_bounds: (Vec3, Vec3),
     shared: SharedPasses,
+    /// What is drawn over the opaque surfaces.
+    pub(crate) layers: Option<LayerScene>,
 }
 
 /// The pipelines of the passes that all strategies share. Clones share them.
@@ -87,11 +92,13 @@ impl Renderer {
             scene_group: scene.bind_group(gpu, &inputs),
             scene,
             targets,
+            layers: None,
         })
     }
 
     /// A renderer of the same scene for a second view in the same frame, such as a light's. It has
-    /// its own view, lights and targets, and shares the uploaded scene and pipelines.
+    /// its own view, lights and targets, and shares the uploaded scene and pipelines. It has no layers, and draws
+    /// transparent surfaces as opaque ones.
     pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
@@ -114,7 +121,25 @@ impl Renderer {
             models: self.models.clone(),
             surface_bounds: self.surface_bounds,
             shared,
+            layers: None,
         })
+    }
+
+    /// Sets what is drawn over the opaque surfaces, for frames that are prepared afterwards and for [`Lighting`](crate::Lighting) that is
+    /// made afterwards. Transparent surfaces are then no longer drawn as opaque ones.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for faulty options, for transparent surfaces in a scene without any, and if the
+    /// device cannot blend into single precision.
+    pub fn show_layers(&mut self, options: &LayerOptions) -> Result<(), ShadingError> {
+        self.layers = LayerScene::new(&self.gpu, &self.scene, options)?;
+        Ok(())
+    }
+
+    /// The kinds of layers that it draws.
+    pub fn layer_kinds(&self) -> LayerKinds {
+        self.layers.as_ref().map(LayerScene::kinds).unwrap_or_default()
     }
 
     /// The device it draws on.
@@ -128,9 +153,17 @@ impl Renderer {
     }
 
     /// The frame that a strategy gets: this view and these lights, with this renderer's depth,
-    /// normals and base colours, the boxes of its models, and the box around its surfaces.
+    /// normals and base colours, the boxes of its models, and the box around its surfaces. With layers, shading
+    /// also looks lists up in front of opaque surfaces, and with fog at any depth.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
+        let kinds = self.layer_kinds();
+        let samples = match (kinds.fog, kinds.any()) {
+            (true, _) => SampleDomain::AnyDepth,
+            (false, true) => SampleDomain::InFront,
+            (false, false) => SampleDomain::OpaqueSurfaces,
+        };
         Frame::new(view, lights)
+            .sampled_at(samples)
             .with_seed(self.seed)
             .with_depth(&self.targets.depth)
             .with_normals(&self.targets.normal)
@@ -160,6 +193,9 @@ impl Renderer {
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
         self.lights = LightTotals::of_buffer(lights);
+        if let Some(layers) = &mut self.layers {
+            layers.prepare(&self.gpu, view, self.surface_bounds)?;
+        }
         Ok(())
     }
 
@@ -266,6 +302,7 @@ impl Renderer {
     ) {
         let viewport = view.viewport;
         let textures = name != "depth" || self.scene.has_mask();
+        let only_opaque = self.layer_kinds().sheets;
         passes.render(name, descriptor, &mut |pass| {
             pass.set_viewport(
                 viewport.x as f32,
@@ -280,7 +317,7 @@ impl Renderer {
                 pass.set_bind_group(1, lists, &[]);
             }
             pass.set_bind_group(2, scene, &[]);
-            self.scene.draw(pass, textures, |key| pipelines.get(key));
+            self.scene.draw(pass, textures, only_opaque, |key| pipelines.get(key));
         });
     }
 

@@ -18,6 +18,10 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "forward",
         "clay",
         "write_model_ids",
+        "sheets",
+        "fogged",
+        "captures",
+        "captured",
         "model_ids",
         "hard_cut",
         "no_cut",
@@ -72,6 +76,14 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::geometry", include_str!("shaders/geometry.wesl"))
         .module("package::gbuffer", include_str!("shaders/gbuffer.wesl"))
         .module("package::deferred", include_str!("shaders/deferred.wesl"))
+        .module("package::layer_fog", include_str!("shaders/layer_fog.wesl"))
+        .module("package::scattered_light", include_str!("shaders/scattered_light.wesl"))
+        .module("package::fog_light", include_str!("shaders/fog_light.wesl"))
+        .module("package::fog_sum", include_str!("shaders/fog_sum.wesl"))
+        .module("package::fog_apply", include_str!("shaders/fog_apply.wesl"))
+        .module("package::particles", include_str!("shaders/particles.wesl"))
+        .module("package::capture", include_str!("shaders/capture.wesl"))
+        .module("package::asked", include_str!("shaders/asked.wesl"))
         .module("package::operations", include_str!("shaders/operations.wesl"))
         .module("package::probe", include_str!("shaders/probe.wesl"))
         .module("package::dump", include_str!("shaders/dump.wesl"))

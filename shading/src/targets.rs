@@ -90,6 +90,16 @@ impl Targets {
         self.size.map(u64::from).iter().product::<u64>() * u64::from(texels)
     }
 
+    /// The lit image as the target of a pass that draws over it.
+    pub(crate) fn radiance_kept(&self) -> wgpu::RenderPassColorAttachment<'_> {
+        wgpu::RenderPassColorAttachment {
+            view: &self.radiance,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        }
+    }
+
     fn make(gpu: &Gpu, size: [u32; 2], scene: &SceneGpu) -> Self {
         let [width, height] = size;
         let texture = |label, format, usage| {

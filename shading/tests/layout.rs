@@ -8,8 +8,8 @@ use assign::{
     struct_layout,
 };
 use shading::{
-    InstanceRecord, LightingRecord, MaterialRecord, PixelGroupsRecord, PixelSurface, SunRecord,
-    SunsRecord,
+    FogRecord, InstanceRecord, LightingRecord, MaterialRecord, ParticleRecord, PixelGroupsRecord,
+    PixelSurface, SunRecord, SunsRecord,
 };
 
 /// A shader that reads instances and materials.
@@ -46,7 +46,7 @@ fn instance() {
 #[test]
 fn material() {
     let rust = struct_layout!(MaterialRecord: base_color, emissive, metallic, roughness,
-        normal_scale, alpha_cutoff, unused, dielectric, uv_transforms);
+        normal_scale, alpha_cutoff, transmission, dielectric, uv_transforms);
     check_element("Material", &rust);
 }
 
@@ -76,4 +76,24 @@ fn records_of_one_pixel() {
         emission, from_suns);
     let wesl = linked("package::contributions").layout_of("PixelSurface");
     assert_eq!(wesl, rust, "WESL, then Rust");
+}
+
+#[test]
+fn fog_and_particles() {
+    let shader = shading::lighting_shader().flag("captures", true).link("package::fog_light");
+    let fog = LinkedModule::new("fog", &shader.unwrap());
+    let rust = struct_layout!(FogRecord: counts, density, near_m, far_m, froxel_px, unused);
+    assert_eq!(fog.layout_of("Fog"), rust, "WESL, then Rust");
+    let shader = shading::lighting_shader().flag("captures", true).link("package::particles");
+    let particles = LinkedModule::new("particles", &shader.unwrap());
+    let rust = struct_layout!(ParticleRecord: center_world, radius_m, color, opacity);
+    assert_eq!(particles.layout_of("Particle"), rust, "WESL, then Rust");
+    assert_eq!(particles.strides_of("Particle"), [rust.bytes], "array stride");
+    // The pass that looks captured samples up reads what was captured.
+    let look_up = include_str!("../../assign/src/shaders/everything.wesl");
+    let shader = shading::lighting_shader().flag("captured", true);
+    let asked = shader.module("package::strategy", look_up).link("package::probe").unwrap();
+    let asked = LinkedModule::new("probe", &asked);
+    assert_eq!(asked.layout_of("CapturedSample"), particles.layout_of("CapturedSample"));
+    assert_eq!(asked.strides_of("CapturedSample"), [32]);
 }

@@ -65,7 +65,7 @@ impl Assignment for HybridGrid {
             FroxelsUniform::new(self.size, Slices::default(), frame.view, frame.lights.bounds())?;
         let depth =
             match frame.samples {
-                SampleDomain::AnyDepth => None,
+                SampleDomain::InFront | SampleDomain::AnyDepth => None,
                 SampleDomain::OpaqueSurfaces => Some(frame.depth.ok_or_else(|| {
                     AssignError::Missing { strategy: self.id(), missing: "depth" }
                 })?),

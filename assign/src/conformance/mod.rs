@@ -82,7 +82,7 @@ pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
 };
 
-use crate::{AssignError, Assignment, Gpu};
+use crate::{AssignError, Assignment, Gpu, SampleDomain};
 
 /// Makes a new instance of the strategy under test.
 pub type Make<'a> = dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> + 'a;
@@ -111,6 +111,23 @@ pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, Confor
         Outcome::Failed(_) => false,
     };
     if report.cases.iter().all(may) { Ok(report) } else { Err(ConformanceError::Rejected(report)) }
+}
+
+/// Runs all cases with samples on surfaces and in front of them ([`SampleDomain::InFront`]). [`run`] does not ask for
+/// these. A refusal is an error.
+pub fn run_in_front(make: &Make<'_>) -> Result<Report, ConformanceError> {
+    let rig = rig()?;
+    let mut report = Report { strategy: make(&rig.gpu).map_err(setup)?.id(), cases: Vec::new() };
+    for case in CASES {
+        let outcome = session::run(rig, case, make, SampleDomain::InFront);
+        let outcome = outcome.map_err(|error| failed(case, error))?;
+        report.cases.push(CaseReport { case: case.name, outcome });
+    }
+    let is_passed = |case: &CaseReport| matches!(case.outcome, Outcome::Passed(_));
+    match report.cases.iter().all(is_passed) {
+        true => Ok(report),
+        false => Err(ConformanceError::Rejected(report)),
+    }
 }
 
 /// Runs one case of [`CASES`] or [`SHARED_CASES`]. Violations are an error; a refusal is an outcome.
@@ -213,7 +230,8 @@ fn find(name: &str) -> Result<&'static Case, ConformanceError> {
 }
 
 fn one(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
-    let outcome = session::run(rig, case, make).map_err(|error| failed(case, error))?;
+    let outcome = session::run(rig, case, make, SampleDomain::AnyDepth);
+    let outcome = outcome.map_err(|error| failed(case, error))?;
     Ok(CaseReport { case: case.name, outcome })
 }
 
@@ -233,8 +251,10 @@ mod tests {
     #[test]
     fn a_case_without_pairs_fails() {
         let case = Case { has_pairs: true, ..*find("no-lights").unwrap() };
-        let outcome =
-            session::run(rig().unwrap(), &case, &|gpu| Ok(Box::new(Everything::new(gpu)?)));
+        let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+            Ok(Box::new(Everything::new(gpu)?))
+        };
+        let outcome = session::run(rig().unwrap(), &case, &make, SampleDomain::AnyDepth);
         let Ok(Outcome::Failed(violations)) = outcome else {
             panic!("{outcome:?}");
         };

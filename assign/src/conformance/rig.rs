@@ -2,10 +2,10 @@
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
-use super::stage::Stage;
+use super::stage::{Sample, Stage};
 use crate::{
-    AssignError, Assignment, FrameBindings, Gpu, LightKinds, LightList, Shader, entry,
-    kernel::bind_entries, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Assignment, FrameBindings, Gpu, LightKinds, LightList, SampleDomain, Shader,
+    entry, kernel::bind_entries, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 /// Bind group of the lists in the probe shader.
@@ -63,15 +63,22 @@ impl Rig {
         Self { draw: draw_pipeline(&gpu), gpu, probe_layout, dump_layout }
     }
 
-    /// Uploads the samples, all or only those on surfaces, and draws the surfaces.
-    pub(super) fn set_up(&self, stage: &Stage, any_depth: bool) -> Result<Surfaces, AssignError> {
+    /// Uploads the samples of a domain, and draws the surfaces.
+    pub(super) fn set_up(
+        &self,
+        stage: &Stage,
+        domain: SampleDomain,
+    ) -> Result<Surfaces, AssignError> {
         let device = &self.gpu.device;
-        let samples = match any_depth {
-            true => &stage.samples[..],
-            false => &stage.samples[..stage.on_surfaces],
+        let (on_surfaces, open) = stage.samples.split_at(stage.on_surfaces);
+        let is_asked = |sample: &&Sample| match domain {
+            SampleDomain::OpaqueSurfaces => false,
+            SampleDomain::InFront => stage.is_in_front(sample),
+            SampleDomain::AnyDepth => true,
         };
-        let probes: Vec<Probe> = samples
+        let probes: Vec<Probe> = on_surfaces
             .iter()
+            .chain(open.iter().filter(is_asked))
             .map(|s| Probe {
                 pixel: s.pixel.map(|p| p as f32 + 0.5),
                 depth_clip: s.depth_clip,

@@ -24,13 +24,19 @@ const FRAMES_TO_GROW: u32 = 6;
 /// Size of the pool in the overflow case, entries.
 const TINY_POOL: u32 = 64;
 
-/// Runs one case. Violations are an outcome; an error is any other failure.
-pub(super) fn run(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<Outcome, AssignError> {
+/// Runs one case with samples in `domain`, or on surfaces only if the strategy refuses look-ups at any depth.
+/// Violations are an outcome; an error is any other failure.
+pub(super) fn run(
+    rig: &Rig,
+    case: &Case,
+    make: &Make<'_>,
+    domain: SampleDomain,
+) -> Result<Outcome, AssignError> {
     let seed =
         case.name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     let mut findings = Findings::new(case.name);
     let mut figures = Figures::default();
-    let mut run = Run { rig, make, findings: &mut findings, figures: &mut figures };
+    let mut run = Run { rig, make, domain, findings: &mut findings, figures: &mut figures };
     let plan = (case.build)(&mut Rng::new(seed));
     let done = match &plan {
         Plan::Still(lit) => run.sequence(std::slice::from_ref(lit)),
@@ -63,7 +69,7 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
     let Plan::Still(lit) = (case.build)(&mut Rng::new(1)) else {
         return Ok(true);
     };
-    let mut session = Session::new(rig, make)?;
+    let mut session = Session::new(rig, make, SampleDomain::AnyDepth)?;
     session.set_up(rig, &lit)?;
     session.draw(rig, &lit, false)?;
     Ok(session.strategy.lists().group_count() > 0)
@@ -73,6 +79,7 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
 struct Run<'r> {
     rig: &'r Rig,
     make: &'r Make<'r>,
+    domain: SampleDomain,
     findings: &'r mut Findings,
     figures: &'r mut Figures,
 }
@@ -80,7 +87,7 @@ struct Run<'r> {
 impl Run<'_> {
     /// Draws the stages in sequence with one instance. Draws each stage's last frame twice.
     fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
-        let mut session = Session::new(self.rig, self.make)?;
+        let mut session = Session::new(self.rig, self.make, self.domain)?;
         let mut fresh = true;
         for (stage, lit) in (0..).zip(stages) {
             self.findings.stage = stage;
@@ -145,7 +152,7 @@ impl Run<'_> {
 
     /// Draws frames of lights that change in each of them.
     fn living(&mut self, living: &Living) -> Result<(), AssignError> {
-        let mut session = Session::living(self.rig, self.make, living)?;
+        let mut session = Session::living(self.rig, self.make, living, self.domain)?;
         for (stage, lit) in (0..).zip(&living.frames) {
             self.findings.stage = stage;
             session.set_up(self.rig, lit)?;
@@ -187,7 +194,7 @@ impl Run<'_> {
     /// With a pool that is far too small, no pair is missed and the overflow is counted. Without
     /// the limit, the overflow ends.
     fn overflow(&mut self, lit: &Lit) -> Result<(), AssignError> {
-        let mut session = Session::new(self.rig, self.make)?;
+        let mut session = Session::new(self.rig, self.make, self.domain)?;
         session.strategy.lists_mut().limit_pool(TINY_POOL);
         session.set_up(self.rig, lit)?;
         for wipe in [true, false] {
@@ -212,7 +219,7 @@ impl Run<'_> {
     fn quarantine(&mut self, clean: &Lit, dirty: &Lit, bad: &[usize]) -> Result<(), AssignError> {
         let mut settled = Vec::new();
         for lit in [clean, dirty] {
-            let mut session = Session::new(self.rig, self.make)?;
+            let mut session = Session::new(self.rig, self.make, self.domain)?;
             session.set_up(self.rig, lit)?;
             settled.push(self.settle(&mut session, lit, true)?);
             let rejected = session.lights.rejected().iter().map(|r| r.index);
@@ -242,23 +249,28 @@ struct Session {
 }
 
 impl Session {
-    fn new(rig: &Rig, make: &Make<'_>) -> Result<Self, AssignError> {
+    fn new(rig: &Rig, make: &Make<'_>, domain: SampleDomain) -> Result<Self, AssignError> {
         Ok(Self {
             strategy: make(&rig.gpu)?,
             frame: FrameBindings::new(&rig.gpu),
             lights: LightBuffer::new(&rig.gpu, &[])?,
             surfaces: None,
-            domain: SampleDomain::AnyDepth,
+            domain,
             feed: None,
         })
     }
 
     /// A session whose lights the GPU sorts.
-    fn living(rig: &Rig, make: &Make<'_>, living: &Living) -> Result<Self, AssignError> {
+    fn living(
+        rig: &Rig,
+        make: &Make<'_>,
+        living: &Living,
+        domain: SampleDomain,
+    ) -> Result<Self, AssignError> {
         let order = LightOrder::Gpu { every: living.every };
         let lights = LightBuffer::ordered(&rig.gpu, &[], order)?;
         let feed = living.from_gpu.then(|| Feed::new(&rig.gpu, &living.frames)).transpose()?;
-        Ok(Self { lights, feed, ..Self::new(rig, make)? })
+        Ok(Self { lights, feed, ..Self::new(rig, make, domain)? })
     }
 
     /// Uploads a stage.
@@ -273,13 +285,12 @@ impl Session {
         if lit.opaque_only {
             self.domain = SampleDomain::OpaqueSurfaces;
         }
-        let any_depth = self.domain == SampleDomain::AnyDepth;
-        self.surfaces = Some(rig.set_up(&lit.stage, any_depth)?);
+        self.surfaces = Some(rig.set_up(&lit.stage, self.domain)?);
         Ok(())
     }
 
-    /// Prepares a frame with look-ups at any depth. If the strategy refuses them, prepares it with
-    /// look-ups on opaque surfaces.
+    /// Prepares a frame. If the strategy refuses look-ups at any depth, prepares it with look-ups on opaque
+    /// surfaces.
     fn prepare(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
         let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
         self.frame.update(&rig.gpu, &frame)?;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat3, Vec3};
 
-use crate::{ModelBox, Projection, View};
+use crate::{DepthMapping, ModelBox, Projection, View};
 
 /// A seeded stream of random numbers (SplitMix64), the same on every platform.
 #[derive(Debug)]
@@ -317,6 +317,17 @@ impl Stage {
                 normal_world: Vec3::new(normal_x, normal_y, normal_z),
             });
         }
+    }
+
+    /// Whether no surface lies between the eye and a sample.
+    pub(super) fn is_in_front(&self, sample: &Sample) -> bool {
+        let [x, y] = sample.pixel;
+        let [.., surface] = self.texels[(x + y * self.target[0]) as usize];
+        let nearer = match self.view.depth {
+            DepthMapping::Standard => sample.depth_clip <= surface,
+            DepthMapping::Reversed => sample.depth_clip >= surface,
+        };
+        surface < 0.0 || nearer
     }
 
     fn deepest_surface(&self) -> f64 {

@@ -8,6 +8,7 @@ use shading::{AreaModel, Cut};
 
 use super::{
     headings::{BOUNCE, CHECKS, LISTS, SHADING, TIMING},
+    layers::LayerArgs,
     modes::Modes,
     named::named,
     stage::StageArgs,
@@ -22,7 +23,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub stage: StageArgs,
 
-    /// Strategies to compare, separated by commas; `all` takes every one
+    /// Strategies to compare, separated by commas, or all
     ///
     /// `lightbench list strategies` lists all ids; `list engines` lists names like engine:bevy.
     #[arg(
@@ -55,6 +56,10 @@ pub struct CompareArgs {
     /// Folder for index.html, results.json and the pictures
     #[arg(long, display_order = 11, value_name = "DIR", default_value = "out/compare")]
     pub out: PathBuf,
+
+    /// What is drawn over the opaque surfaces.
+    #[command(flatten)]
+    pub layers: LayerArgs,
 
     /// How to integrate the light of area lights [default: ltc]
     ///
@@ -153,7 +158,7 @@ const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
 /// Which pictures are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PicturesChoice {
-    /// Each method's image (PNG, linear EXR), its difference to no culling, and heat map
+    /// Each method's image (PNG, linear EXR), its difference to no culling, its heat map
     All,
     /// The same, of methods whose image is not that of no culling in every bit
     Differing,

@@ -5,6 +5,7 @@
 
 pub(super) const SCENE: &str = "Scene and camera";
 pub(super) const SCATTERED: &str = "Scattered lights";
+pub(super) const LAYERS: &str = "Transparent surfaces, particles and fog";
 pub(super) const MOTION: &str = "Lights that move";
 pub(super) const RANGES: &str = "Ranges and order of all lights";
 pub(super) const BOUNCE: &str = "Indirect light: one bounce, by virtual point lights (VPLs)";

@@ -20,7 +20,7 @@ pub struct MotionArgs {
     #[arg(long, value_name = "LAW", value_parser = named(MOTIONS, MotionChoice::name), help_heading = MOTION, hide_short_help = true)]
     pub motion: Option<MotionChoice>,
 
-    /// Speed of the lights in metres per second, 0 to 1e6; with --motion file, a factor on its clock
+    /// Speed of the lights, m/s, 0 to 1e6; with --motion file a factor on its clock
     #[arg(long, value_name = "M/S", default_value = "1", allow_hyphen_values = true, value_parser = values::number_from(0.0, 1e6), help_heading = MOTION, hide_short_help = true)]
     pub speed: f64,
 

@@ -73,7 +73,7 @@ pub struct StageArgs {
     #[arg(long, help_heading = SCENE, hide_short_help = true)]
     pub no_own_lights: bool,
 
-    /// Seed of the scattered lights
+    /// Seed of the scattered lights and particles
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed, help_heading = SCATTERED, hide_short_help = true)]
     pub seed: u64,
 
@@ -85,7 +85,7 @@ pub struct StageArgs {
     #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share, help_heading = SCATTERED, hide_short_help = true)]
     pub spots: f64,
 
-    /// Share of area lights among the scattered lights, 0 to 1; together with --spots at most 1
+    /// Share of area lights among scattered lights, 0 to 1; with --spots at most 1
     #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share, help_heading = SCATTERED, hide_short_help = true)]
     pub areas: f64,
 
@@ -93,7 +93,7 @@ pub struct StageArgs {
     #[arg(long, value_name = "WHICH", default_value = "both", value_parser = named(OUTLINES, Outlines::name), help_heading = SCATTERED, hide_short_help = true)]
     pub outlines: Outlines,
 
-    /// Range of a scattered area light's diffuse term / range of its specular term, above 0 and at most 1
+    /// Diffuse / specular range of scattered area lights, above 0 and at most 1
     #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part, help_heading = SCATTERED, hide_short_help = true)]
     pub diffuse_share: f64,
 
@@ -104,7 +104,7 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale, help_heading = SCATTERED, hide_short_help = true)]
     pub radius_scale: Option<f64>,
 
-    /// Distribution of the radii of scattered lights; each has a mean of one metre
+    /// Distribution of the radii of scattered lights, each of mean one metre
     #[arg(long, value_name = "NAME", default_value = "gamma", value_parser = named(RADII, Radii::name), help_heading = SCATTERED, hide_short_help = true)]
     pub radii: Radii,
 
@@ -116,7 +116,7 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]
     pub threshold: Option<f64>,
 
-    /// Give every area light the range of Swarbrick 2025 (listing 4.1), from the irradiance X; 1e-9 to 1e9
+    /// Give area lights the range of Swarbrick 2025 (listing 4.1) from irradiance X; 1e-9 to 1e9
     ///
     /// The diffuse light ends where 4.4 times the flux, spread over a hemisphere, falls to X.
     #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]

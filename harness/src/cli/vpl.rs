@@ -13,7 +13,7 @@ use super::{
 /// The lights of one bounce, in place of scattered lights and the scene's own.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct VplArgs {
-    /// Light the scene only by its primary light: its brightest sun or else spot, else a made-up sun
+    /// Light the scene only by its primary light: its brightest sun, else spot, else a new sun
     #[arg(long, conflicts_with_all = ["lights", "lights_from", "spots", "areas", "threshold"], help_heading = BOUNCE, hide_short_help = true)]
     pub primary: bool,
 

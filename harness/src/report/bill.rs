@@ -77,7 +77,8 @@ pub(crate) fn columns<'a, 'r, T: 'a>(
         Column::ms(head.clone(), move |row: &T| pass_ms(record(row), &name)).terminal(head)
     };
     columns.extend(assign_passes(records).into_iter().map(pass));
-    columns.push(pass("shade").optional());
+    // The last two light what is drawn over the opaque surfaces.
+    columns.extend(["shade", "fog-light", "blend"].map(|name| pass(name).optional()));
     columns
 }
 

@@ -50,6 +50,7 @@ fn comparable(a: &Record, b: &Record) -> bool {
         a.setting.motion == b.setting.motion && a.setting.light_order == b.setting.light_order;
     is_same_scene
         && is_same_motion
+        && a.setting.layers == b.setting.layers
         && a.setting.path_hash == b.setting.path_hash
         && key(a) == key(b)
 }

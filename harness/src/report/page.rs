@@ -8,7 +8,7 @@ use super::markup::{Html, html, with_names_whole};
 use super::metrics::{Measured, Metric, metrics};
 use crate::digits::rounded;
 use crate::grouping;
-use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
+use crate::results::{Clock, DeviceType, LayerSetting, Record, Results, TruthLevel};
 
 pub(crate) fn paragraphs(class: &str, texts: &[String]) -> Html {
     let paragraph =
@@ -59,8 +59,24 @@ pub(crate) fn setting(record: &Record) -> String {
     if let Some(motion) = living::motion_words(&record.setting) {
         parts.push(format!("lights move: {motion}"));
     }
+    parts.extend(record.setting.layers.iter().flat_map(layer_words));
     parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")
+}
+
+/// What is drawn over the opaque surfaces.
+fn layer_words(layers: &LayerSetting) -> Vec<String> {
+    let mut words = Vec::new();
+    if layers.transparent {
+        words.push("transparent surfaces".to_owned());
+    }
+    match layers.particles {
+        0 => {}
+        1 => words.push("1 particle".to_owned()),
+        count => words.push(format!("{} particles", number(count as f64))),
+    }
+    words.extend(layers.fog_per_m.map(|fog| format!("fog {} per metre", rounded(fog))));
+    words
 }
 
 /// What each column means: all columns that a table of these results may have.

@@ -1,7 +1,7 @@
 //! Marks rows whose times are limited by rasterisation, on chips that are weak at it.
 //!
 //! Data-centre GPUs run fragment shaders on only a few of their processors. A row is marked if a pass on its
-//! bill draws triangles: lighting in forward shading, light volumes, model ids,
+//! bill draws triangles: lighting in forward shading, light volumes, model ids, layers,
 //! and lights that the rasteriser adds to cells. The report computes the
 //! mark, so stored results get it too.
 

@@ -32,8 +32,8 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
         (name, _) if makes_lights(name) => PassKind::Other,
         ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
         ("depth", Mode::ForwardNoPrepass) => PassKind::Assign,
-        ("depth" | "gbuffer", _) => PassKind::Scene,
-        ("shade" | "clay", _) => PassKind::Shade,
+        ("depth" | "gbuffer" | "fog-sum" | "fog-apply", _) => PassKind::Scene,
+        ("shade" | "clay" | "fog-light" | "blend", _) => PassKind::Shade,
         _ => PassKind::Assign,
     }
 }
@@ -42,6 +42,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
 pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" | "rsm-depth" | "rsm-gbuffer" => true,
+        "blend" | "fog-apply" => true,
         "shade" => mode.is_forward() || strategy.shade_rasterises(),
         "count" | "fill" => strategy.options().scatter == Scatter::Raster,
         _ => false,

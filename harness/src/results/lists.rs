@@ -34,8 +34,11 @@ pub struct ListFigures {
     /// results and for methods without lists.
     #[serde(default, alias = "memory_bytes")]
     pub assignment_bytes: Option<u64>,
-    /// View samples: pixels that show a surface; 0 if lists were not checked.
+    /// View samples: pixels that show a surface, and samples of layers; 0 if lists were not checked.
     pub samples: u64,
+    /// Of these, fragments of transparent surfaces and particles, and froxels of fog; absent without layers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer_samples: Option<u64>,
     /// Mean number of lights in the list that a sample reads.
     #[serde(default)]
     pub listed_per_sample: Option<f64>,

@@ -70,7 +70,10 @@ pub struct Setting {
     /// How the lights move; absent if they stand still.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSetting>,
-    /// The seed of the scattered lights.
+    /// What is drawn over the opaque surfaces; absent if nothing is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerSetting>,
+    /// The seed of the scattered lights and particles.
     pub seed: u64,
     /// The camera's position, world space, metres.
     #[serde(default)]
@@ -100,6 +103,18 @@ impl Setting {
     pub fn order(&self) -> Option<LightOrder> {
         self.light_order.as_ref()?.parse().ok()
     }
+}
+
+/// What is drawn over the opaque surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LayerSetting {
+    /// Whether transparent surfaces are blended.
+    pub transparent: bool,
+    /// Number of particles.
+    pub particles: u64,
+    /// The rate at which fog scatters light, per metre; absent without fog.
+    pub fog_per_m: Option<f64>,
 }
 
 /// How lights move.

@@ -91,6 +91,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             threshold: None,
             cut: Some("windowed".to_owned()),
             light_order: Some("bvh".to_owned()),
+            layers: None,
             motion: None,
         },
         times: Times {
@@ -120,6 +121,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             first_missed: None,
             checked_pairs: Some(3_275_827),
             samples: 230_400,
+            layer_samples: None,
             untested: None,
             list_bytes: if is_none { 4_016 } else { 1_310_720 },
             assignment_bytes: None,

@@ -104,6 +104,8 @@ impl Reader<'_> {
             emissive: Vec3::from(json.emissive_factor.0) * strength,
             normal_scale: json.normal_texture.as_ref().map_or(1.0, |t| t.scale),
             alpha_cutoff: self.alpha(json),
+            is_blended: matches!(json.alpha_mode, Checked::Valid(AlphaMode::Blend)),
+            transmission: self.transmission(ix, json)?,
             double_sided: json.double_sided,
             base_color_texture: self.info(pbr.base_color_texture.as_ref(), Srgb),
             metallic_roughness_texture: self.info(pbr.metallic_roughness_texture.as_ref(), Linear),
@@ -228,13 +230,39 @@ impl Reader<'_> {
             }
             Checked::Valid(AlphaMode::Blend) => {
                 self.warnings.add(format!(
-                    "material {:?}: alphaMode BLEND is drawn as MASK with cutoff {DEFAULT_CUTOFF}",
+                    "material {:?}: alphaMode BLEND is drawn as MASK with cutoff {DEFAULT_CUTOFF}, unless \
+                     transparent surfaces are drawn",
                     self.name
                 ));
                 Some(DEFAULT_CUTOFF)
             }
             _ => None,
         }
+    }
+
+    /// Reads KHR_materials_transmission, without its texture.
+    fn transmission(&mut self, ix: usize, json: &Json) -> Result<f32, SceneError> {
+        let extension = json.extensions.as_ref().and_then(|e| e.transmission.as_ref());
+        let Some(extension) = extension else { return Ok(0.0) };
+        let factor = extension.transmission_factor.0;
+        if !(0.0..=1.0).contains(&factor) {
+            let name = "KHR_materials_transmission.transmissionFactor";
+            let field = format!("materials[{ix}].extensions.{name}");
+            return Err(self.file.invalid(field, factor, "between 0 and 1"));
+        }
+        if extension.transmission_texture.is_some() {
+            self.warnings.add(format!(
+                "material {:?}: transmissionTexture of KHR_materials_transmission is ignored; its factor is used",
+                self.name
+            ));
+        }
+        if factor > 0.0 {
+            self.warnings.add(format!(
+                "material {:?}: KHR_materials_transmission is left out, unless transparent surfaces are drawn",
+                self.name
+            ));
+        }
+        Ok(factor)
     }
 
     fn info(&mut self, info: Option<&Info>, encoding: Encoding) -> Option<TextureRef> {

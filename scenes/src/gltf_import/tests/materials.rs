@@ -185,3 +185,32 @@ fn webp_textures_are_decoded() {
     assert!(scene.materials[0].base_color_texture.is_none());
     assert_warns(&scene, "KHR_texture_basisu");
 }
+
+#[test]
+fn blend_and_transmission_make_transparent_materials() {
+    let plain = with_extensions(json!({})).expect("valid");
+    assert!(!plain.is_transparent());
+    let extension =
+        |factor: f32| json!({"KHR_materials_transmission": {"transmissionFactor": factor}});
+    let clear = with_extensions(extension(0.75)).expect("valid");
+    assert_eq!((clear.transmission, clear.is_blended, clear.is_transparent()), (0.75, false, true));
+    // The same file, with a texture, and drawn without it.
+    let mut textured = sample();
+    textured.json["materials"][0]["extensions"] = json!({"KHR_materials_transmission":
+        {"transmissionFactor": 0.5, "transmissionTexture": {"index": 0}}});
+    assert_warns(
+        &load(&textured).expect("valid"),
+        "transmissionTexture of KHR_materials_transmission",
+    );
+    for factor in [-0.5, 1.5] {
+        let error = with_extensions(extension(factor)).expect_err("faulty").to_string();
+        assert!(error.contains("transmissionFactor is"), "{error}");
+    }
+    let mut blended = sample();
+    blended.json["materials"][0]["alphaMode"] = "BLEND".into();
+    let blended = load(&blended).expect("valid");
+    let glass = &blended.materials[0];
+    assert!(glass.is_blended && glass.is_transparent() && glass.alpha_cutoff == Some(0.5));
+    assert_warns(&blended, "unless transparent surfaces are drawn");
+    assert_ne!(blended.hash(), load(&sample()).expect("valid").hash());
+}

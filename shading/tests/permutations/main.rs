@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
+mod layers;
+
 use std::collections::BTreeSet;
 
 use assign::{LightReader, Storage, StrategyWesl, conformance::LinkedModule};
@@ -10,7 +12,7 @@ use assign::{LightReader, Storage, StrategyWesl, conformance::LinkedModule};
 type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
 
 const NO_CULLING: StrategyWesl<'static> = StrategyWesl {
-    main: include_str!("../../assign/src/shaders/everything.wesl"),
+    main: include_str!("../../../assign/src/shaders/everything.wesl"),
     imports: &[],
     flags: &[],
     reader: LightReader::Stored(Storage::Lists),
