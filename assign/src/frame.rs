@@ -183,8 +183,8 @@ impl<'a> Frame<'a> {
         self.some_depth(strategy)
     }
 
-    /// Refuses look-ups at any depths but those of a domain. `strategy` is the id of what serves the domain, and `reason` says
-    /// why it serves no other.
+    /// Refuses look-ups at any depths but those of a domain. `strategy` is the id of what serves the domain, and
+    /// `reason` says why it serves no other.
     ///
     /// # Errors
     ///

@@ -209,10 +209,9 @@ fn pipeline(
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
     let shown = Shown::from_scene(scene);
     let shader = shader(pass, key, shown);
-    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, or end with the strategy's look-up,
-    // which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign`
-    // do, and the strategy's author guarantees it of its own.
-    // The other passes have no loop.
+    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, or end with
+    // the strategy's look-up, which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of
+    // `assign` do, and the strategy's author guarantees it of its own. The other passes have no loop.
     #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, shown);

@@ -125,8 +125,9 @@ impl Renderer {
         })
     }
 
-    /// Sets what is drawn over the opaque surfaces, for frames that are prepared afterwards and for [`Lighting`](crate::Lighting) that is
-    /// made afterwards. Transparent surfaces are then no longer drawn as opaque ones.
+    /// Sets what is drawn over the opaque surfaces. It holds for frames that are prepared afterwards, with
+    /// [`Lighting`](crate::Lighting) that is made afterwards. Transparent surfaces are then no longer drawn as opaque
+    /// ones.
     ///
     /// # Errors
     ///

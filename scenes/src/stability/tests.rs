@@ -37,7 +37,7 @@ fn depth_m(scene: &Scene, point: Vec3) -> f32 {
 
 /// Points of a triangle, 28 in all.
 fn points_on([a, b, c]: [Vec3; 3]) -> impl Iterator<Item = DVec3> {
-    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
     let shares = (0..7).flat_map(|u| (0..7 - u).map(move |v| (f64::from(u), f64::from(v))));
     shares.map(move |(u, v)| a + (b - a) * (u / 6.0) + (c - a) * (v / 6.0))
 }

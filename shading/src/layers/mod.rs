@@ -1,9 +1,9 @@
 //! Layers over the opaque surfaces: transparent surfaces, particles, and fog.
 //!
 //! Layers are lit at depths where no opaque surface lies. So a frame with layers asks strategies for more look-ups
-//! ([`SampleDomain`](assign::SampleDomain)): in front of opaque surfaces for transparent surfaces and particles, and at any
-//! depth for fog, whose froxels cover several pixels and lie behind surfaces too. A strategy that does not serve them
-//! refuses the frame before it is drawn.
+//! ([`SampleDomain`](assign::SampleDomain)). Transparent surfaces and particles need look-ups in front of opaque
+//! surfaces. Fog needs them at any depth, because its froxels cover several pixels and lie behind surfaces too. A
+//! strategy that does not serve them refuses the frame before it is drawn.
 //!
 //! # Passes, after `shade`
 //!
