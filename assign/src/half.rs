@@ -161,7 +161,7 @@ mod tests {
         strategy.prepare(&gpu, &Frame::new(&view, &lights)).expect("prepares");
         let read = strategy.copy.lights();
         let ranges: Vec<f32> = read.iter().map(|light| light.range_m).collect();
-        assert_eq!(ranges, [MIN_RANGE_M, 2.0, 2.026_557_9e-6, 9.0]);
+        assert_eq!(ranges, [MIN_RANGE_M, 2.0, 2.026_558e-6, 9.0]);
         assert_eq!((read[0].position, read[1].position.x), (far.position, 10.0));
         let order = LightOrder::Gpu { every: 1 };
         let moving = LightBuffer::ordered(&gpu, lights.lights(), order).expect("lights");

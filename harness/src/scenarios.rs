@@ -23,6 +23,9 @@ fn row(scenario: &Scenario) -> String {
         let moves: Vec<String> = scenario.moves.iter().map(|way| words(*way)).collect();
         note(format!("moves: {}", moves.join(", ")));
     }
+    if !scenario.options.is_empty() {
+        note(format!("drawn with {}", scenario.options.join(" ")));
+    }
     if let Some(why_not) = scenario.why_not {
         note(format!("not shown yet: {why_not}"));
     }

@@ -67,12 +67,12 @@ mod tests {
 
     use super::*;
 
-    /// The values of an image's first channel, by pixel.
-    type Values = fn(usize) -> f32;
+    /// The red of each pixel.
+    type Red = fn(usize) -> f32;
 
     /// The found error of frames of 4 x 2 pixels, each with a reference.
-    fn found(frames: &[(Values, Values)]) -> Option<TemporalError> {
-        let image = |value: Values| {
+    fn found(frames: &[(Red, Red)]) -> Option<TemporalError> {
+        let image = |value: Red| {
             let pixels = (0..8).map(|ix| [value(ix), 1.0, 0.0]).collect();
             HdrImage { width: 4, height: 2, pixels }
         };
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn a_pop_is_found_with_its_pixel_and_frame() {
         let popped = |ix| if ix == 6 { 0.25 } else { 1.0 };
-        let frames: [(Values, Values); 4] =
+        let frames: [(Red, Red); 4] =
             [(|_| 1.0, |_| 1.0), (|_| 5.0, |_| 5.0), (popped, |_| 1.0), (popped, |_| 1.0)];
         let found = found(&frames).expect("four frames");
         // One channel of 24 changes by 0.75 in one of three pairs of frames.

@@ -56,6 +56,19 @@ fn named(results: &Results, budget: f64) -> &str {
 }
 
 #[test]
+fn a_method_that_fails_on_purpose_is_never_advised() {
+    let sound = || around("T-E/28x28", 2.0, 0.01, 1 << 20);
+    let named_beside = |id: &str| {
+        let results = results_of(vec![sound(), lossy(id, 1.0, 0.01, 0.0005)]);
+        named(&results, 0.001).to_owned()
+    };
+    assert_eq!(named_beside("T-E/28x28/cap64"), "T-E/28x28/cap64", "a limit within the budget");
+    for flawed in ["T-E/28x28/rect", "T-E/28x28/half", "T-E/28x28/unordered/cap64"] {
+        assert_eq!(named_beside(flawed), "T-E/28x28", "{flawed}");
+    }
+}
+
+#[test]
 fn the_first_round_has_every_family_that_a_device_can_run() {
     let gpu = Gpu::noop().expect("a device");
     let ids = first_ids(&gpu, 1_000);

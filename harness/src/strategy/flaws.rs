@@ -41,8 +41,8 @@ const FLAWS: &[Flaw] = &[
         name: "lists in random order, with a limit",
         id: "T-E/32x32/unordered/cap32",
         options: &[],
-        fails: "Where more than 32 lights reach a tile, each frame loses other ones, so the tile flickers, also if \
-                nothing moves.",
+        fails: "Where more lights reach a tile than a list may hold, each frame loses other ones, so the tile flickers, \
+                also if nothing moves.",
         source: "Castor3D, \"Fix clustered lighting lights sort\", 2024: thousands of candles flicker",
     },
     Flaw {

@@ -24,6 +24,8 @@ pub struct Scenario {
     pub figure: Figure,
     /// How time runs here. Without moves, one still frame says all.
     pub moves: &'static [Move],
+    /// Options of the program without which the situation is not drawn, such as `--fog`.
+    pub options: &'static [&'static str],
     /// Why the renderer cannot draw the situation yet, and what that needs. The scene opens all the same, but
     /// does not show the failure.
     pub why_not: Option<&'static str>,
@@ -125,6 +127,7 @@ impl Scenario {
             breaks,
             figure: Figure::None,
             moves: &[],
+            options: &[],
             why_not: None,
             heavy: false,
             make,

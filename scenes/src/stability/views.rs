@@ -92,16 +92,31 @@ pub(super) const ROWS: &[Scenario] = &[
         },
     ),
     Scenario {
-        why_not: Some(
-            "no blended surface is drawn yet: the sheets are opaque. A pass that looks lists up at depths without an \
-             opaque surface will show it.",
-        ),
+        options: &["--transparent"],
         ..row(
             25,
             "transparent-layers",
             "Glass is lit at depths that hold no opaque surface, for which explicit bounds and sparse lists hold \
              nothing.",
             transparent_layers,
+        )
+    },
+    Scenario {
+        options: &["--particles", "150"],
+        ..row(
+            25,
+            "particles",
+            "Particles float where no opaque surface is, so lists made from the depth of surfaces lack their lights.",
+            lit_hall,
+        )
+    },
+    Scenario {
+        options: &["--fog", "0.05"],
+        ..row(
+            25,
+            "fog",
+            "Fog is lit in the whole depth of the view, in clusters and in tiles' voids that hold no surface.",
+            lit_hall,
         )
     },
 ];
@@ -140,6 +155,7 @@ fn transparent_layers(kit: &mut Kit) {
     kit.hall();
     let mut glass = plain("glass", [0.7, 0.85, 0.8], 0.1, 0.0);
     glass.base_color.w = 0.3;
+    glass.is_blended = true;
     glass.double_sided = true;
     let glass = kit.material(glass);
     for layer in 0..5 {

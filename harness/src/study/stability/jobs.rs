@@ -66,7 +66,8 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         let Size { width, height } = size;
         let (size, seed) = (format!("{width}x{height}"), args.seed.to_string());
         let all = ["compare", "--scene", &id, "--size", &size, "--seed", &seed, "--mode", "both"];
-        let all = [&all[..], &["--warmup", "0", "--pictures", "differing"], options].concat();
+        let all = [&all[..], &["--warmup", "0", "--pictures", "differing"], scenario.options].concat();
+        let all = [&all[..], options].concat();
         Job::new(scene, section, variant, &all)
     };
     let moved = |way: Option<Move>| -> Vec<&str> {
