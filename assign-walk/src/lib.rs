@@ -32,9 +32,9 @@
 //! subgroup. The hierarchy takes 0.5 bytes per light. The list of all lights, 4 bytes per light, is there for tools
 //! only.
 //!
-//! Measured along a path of Sponza at 1920x1080 (H200, 2026-11-29; the command is in `docs/tuning.md`): W shades 100
-//! lights in 0.062 ms and 1,000 in 0.315. Tiles that find their bounds while culling (`T-E1/48x48`) take 0.045 and
-//! 0.058 ms, culling included.
+//! Measured along a path of Sponza at 1920x1080 (H200, 2026-11-30; `docs/methods.md`): W shades 100 lights in 0.064 ms
+//! and 1,000 in 0.33. Tiles that find their bounds while culling (`T-E1/48x48`) take 0.044 and 0.055 ms, culling
+//! included.
 //!
 //! # Where it fails
 //!

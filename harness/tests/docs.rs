@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use harness::{
     advise::{answer, error_of, verdict},
-    report::{best_sizes_markdown, chosen_sizes_markdown, is_surely_faster, render_markdown},
+    report::{
+        best_sizes_markdown, chosen_sizes_markdown, is_surely_faster, memory_chart, render_markdown,
+    },
     results::{Record, Results},
     strategy,
     study::{Done, claims_markdown, write_study},
@@ -107,7 +109,10 @@ fn with_methods(document: &str, root: &Path) -> String {
         let columns = LIGHT_COUNTS.map(|count| read(count).expect("results"));
         let table = match chosen {
             "best" => best_sizes_markdown(&columns),
-            ids => chosen_sizes_markdown(&columns, &ids.split(',').collect::<Vec<_>>()),
+            ids => {
+                let ids: Vec<&str> = ids.split(',').collect();
+                chosen_sizes_markdown(&columns, &ids).expect("measured ids")
+            }
         };
         fresh += &format!("{METHODS}{words} -->\n{table}{END}{behind}");
     }
@@ -136,7 +141,7 @@ fn the_verdicts_of_the_results_are_those_of_the_reports() {
 const PARTIAL: &str = "h200-comparison";
 
 /// Charts of the H200 studies that documents show.
-const CHARTS: [(&str, &[&str]); 6] = [
+const CHARTS: [(&str, &[&str]); 7] = [
     ("h200-comparison", &["sponza-scaling-linear.svg"]),
     (
         "h200-study",
@@ -145,6 +150,7 @@ const CHARTS: [(&str, &[&str]); 6] = [
     ("h200-area", &["atrium-models-flip.svg"]),
     ("h200-endless", &["sponza-a-2016-times.svg"]),
     ("h200-cdi", &["sponza-indirect-mean-error.svg"]),
+    ("h200-engines", &["sponza-errors-10000.svg"]),
     ("h200-cdi-builds", &["sponza-range-errors.svg", "town-builds.svg"]),
 ];
 
@@ -163,6 +169,23 @@ fn the_charts_of_the_documents_are_those_of_the_studies() {
             check_fresh(&root().join("docs").join(chart), &fresh.expect("the chart"));
             assert!(readme.contains(chart) || verdicts.contains(chart), "{chart} is shown nowhere");
         }
+    }
+}
+
+/// Charts of time against memory that documents show, and the results that they are made from.
+const MEMORY_CHARTS: [(&str, &str); 2] = [
+    ("sponza-memory-10000.svg", "results/h200-families/sponza-10000.json"),
+    ("sponza-memory-1000.svg", "results/h200-families/sponza-1000.json"),
+];
+
+#[test]
+fn the_charts_of_memory_are_those_of_the_results() {
+    let document = std::fs::read_to_string(root().join("docs/methods.md")).expect("methods.md");
+    for (chart, file) in MEMORY_CHARTS {
+        let results = Results::read(&root().join(file)).expect("results");
+        let fresh = memory_chart(&results).expect("a chart");
+        check_fresh(&root().join("docs").join(chart), &fresh);
+        assert!(document.contains(chart), "{chart} is shown nowhere");
     }
 }
 

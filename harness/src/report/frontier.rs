@@ -3,7 +3,7 @@
 use super::format::{mebibytes, significant};
 use super::rank::{competes, is_timed};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
-use crate::results::Record;
+use crate::results::{Record, Results};
 
 /// The points that no other beats in one and equals in the other, from left to right.
 pub(crate) fn frontier(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
@@ -28,6 +28,11 @@ pub(crate) const TIME_AND_MEMORY_NOTE: &str = "Each point is a strategy that cul
      places. Strategies with /bvh hold for still lights where the CPU built their hierarchy beforehand.";
 
 const MIB: f64 = 1_048_576.0;
+
+/// The chart of assign + shade against GPU memory, as a file; `None` where fewer than two records have both figures.
+pub fn memory_chart(results: &Results) -> Option<String> {
+    Some(time_against_memory(&results.records.iter().collect::<Vec<_>>())?.to_svg_file())
+}
 
 /// Assign + shade against GPU memory, of the records that cull without a loss. `None` where fewer than two of them
 /// have both figures.

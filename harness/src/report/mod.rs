@@ -37,6 +37,7 @@ pub(crate) mod terms;
 pub use families::{best_sizes_markdown, chosen_sizes_markdown};
 pub use finding::{finding, lights, notices};
 pub use format::significant;
+pub use frontier::memory_chart;
 pub use html::{render_html, write_html};
 pub use lead::needs_built_hierarchy;
 pub use loss::error_words;

@@ -108,8 +108,16 @@ const Z_BINS: Row = Row {
              Rendering",
     default: "32x32x64",
     sizes: Sizes {
-        few: &["16x16x64", "24x24x64", "32x32x32", "48x48x64"],
-        many: &["16x16x64", "24x24x64", "32x32x32", "32x32x64", "32x32x128", "48x48x64"],
+        few: &["16x16x64", "24x24x64", "48x48x64", "64x64x64"],
+        many: &[
+            "16x16x64",
+            "24x24x64",
+            "32x32x32",
+            "32x32x64",
+            "32x32x128",
+            "48x48x64",
+            "64x64x64",
+        ],
     },
     axes: &[
         Axis::Slices,
