@@ -91,6 +91,11 @@ impl MemoryWatch {
         }
     }
 
+    /// Starts again with another device.
+    pub(super) fn forget_device(&mut self) {
+        (self.rounds, self.settled) = (0, None);
+    }
+
     /// What was seen, in a line.
     pub(super) fn summary(&self) -> String {
         let device = match self.last.device {
@@ -133,6 +138,8 @@ mod tests {
         let found = watch.look(memory(20, 900), memory(20, 970), true).expect("a finding");
         assert!(found.contains("from 900 to 970 MiB"), "{found}");
         assert_eq!(watch.look(Memory::default(), Memory::default(), true), None);
+        watch.forget_device();
+        assert_eq!(watch.look(start, memory(90, 900), false), None, "another device");
     }
 
     #[test]

@@ -16,7 +16,8 @@
 //! The first finding ends the soak. Its message gives the command that starts again at that round, which reproduces
 //! it: a round depends on no other.
 //!
-//! Devices and compiled shaders are kept over all rounds. Device loss is not simulated.
+//! The device and its compiled shaders are kept for [`REOPEN_EVERY`] rounds. Then the device is opened anew, because
+//! every combination of axes has shaders of its own, which would pile up. Device loss is not simulated.
 
 mod frame;
 mod memory;
@@ -41,6 +42,10 @@ use plan::{Round, canonical_stage};
 
 /// Frames of a round.
 pub const ROUND_FRAMES: u32 = 10;
+
+/// Rounds that share a device. 400 frames of seed 7 on llvmpipe took the process from 0.4 to 1.6 GiB of compiled
+/// shaders.
+const REOPEN_EVERY: u32 = 50;
 
 /// Every so many rounds, the first round is drawn again: its shaders are compiled, so the process should not grow.
 const AGAIN_EVERY: u32 = 10;
@@ -74,7 +79,6 @@ pub fn soak_altered(
     alter: &Alter<'_>,
 ) -> Result<String, HarnessError> {
     let began = Instant::now();
-    let gpu = bench.gpu().clone();
     let rest = canonical_stage(&args.scene)?;
     // Targets of the largest size, so that no round replaces them.
     bench.stage(&rest)?;
@@ -84,8 +88,17 @@ pub fn soak_altered(
     let mut counts = Counts::default();
     let mut watch = MemoryWatch::default();
     let mut drawn = 0;
+    // Whether this device has compiled the shaders of the first round.
+    let mut knows_first = false;
     for ix in first..first + rounds {
-        let is_again = ix > 0 && ix % AGAIN_EVERY == 0;
+        if ix > first && (ix - first).is_multiple_of(REOPEN_EVERY) {
+            *bench = Bench::open(args.adapter.as_deref())?;
+            bench.stage(&rest)?;
+            watch.forget_device();
+            knows_first = false;
+        }
+        let gpu = bench.gpu().clone();
+        let is_again = ix.is_multiple_of(AGAIN_EVERY);
         let round = Round::new(args, if is_again { 0 } else { ix })?;
         let frames = ROUND_FRAMES.min(args.frames - drawn);
         bar.set_message(round.summary());
@@ -99,8 +112,8 @@ pub fn soak_altered(
         }
         free(bench, &rest)?;
         let after = Memory::now(&gpu);
-        // Only a round that was drawn before in this run has all its shaders.
-        let is_known = is_again && first == 0;
+        let is_known = is_again && knows_first;
+        knows_first |= is_again;
         if let Some(words) = watch.look(before, after, is_known) {
             bar.finish_and_clear();
             return Err(finding(args, (ix + 1) * ROUND_FRAMES - 1, &round, &words));
