@@ -94,7 +94,7 @@ impl<'a> Shader<'a> {
             GroupShape::Box => BOUNDS_BOX_WESL,
             GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
         };
-        let tests = ["hs", "sat_e", "sat_n", "sat_p", "sat_v"];
+        let tests = ["hs", "sat_e", "sat_n", "sat_p", "sat_v", "rect"];
         let shader = self
             .module("package::bounds", bounds)
             .flag("lane_bounds", false)

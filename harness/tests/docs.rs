@@ -150,7 +150,7 @@ const CHARTS: [(&str, &[&str]); 7] = [
     ("h200-area", &["atrium-models-flip.svg"]),
     ("h200-endless", &["sponza-a-2016-times.svg"]),
     ("h200-cdi", &["sponza-indirect-mean-error.svg"]),
-    ("h200-engines", &["sponza-errors-10000.svg"]),
+    ("h200-engines", &["sponza-errors-10000-flip.svg"]),
     ("h200-cdi-builds", &["sponza-range-errors.svg", "town-builds.svg"]),
 ];
 

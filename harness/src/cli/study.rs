@@ -83,6 +83,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "K/N", default_value = "1/1", allow_hyphen_values = true, help_heading = JOBS)]
     pub shard: Shard,
 
+    /// In place of the study stability, draw N random frames and check each, as `lightbench soak` does
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, 1_000_000), help_heading = JOBS)]
+    pub soak: Option<u32>,
+
     /// Lights that move, in every comparison.
     #[command(flatten)]
     pub motion: MotionArgs,

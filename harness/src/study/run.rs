@@ -9,17 +9,19 @@ use super::{
     manifest::{Done, Manifest},
     motion, report,
     scene::StudyScene,
+    slice::Study,
 };
 use crate::{
     bench::Bench,
     checks::check_options,
-    cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, TruthArgs},
+    cli::{self, CdiArgs, CliError, CompareArgs, Invocation, SoakArgs, StudyArgs, TruthArgs},
     compare::compare_on,
     deep_image_run::measure,
     error::HarnessError,
     messages::say,
     out_folder::OutFolder,
     results::{Results, ResultsError},
+    soak::soak_alone,
     truth::render,
 };
 
@@ -27,6 +29,9 @@ use crate::{
 /// line; a process that wants the same folder is shown it.
 pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessError> {
     let study = list::named(&args.study)?;
+    if let Some(frames) = args.soak {
+        return soak(study, args, frames);
+    }
     let args = &args.with_scenes(study.scenes);
     let scenes = StudyScene::all(args)?;
     let out = &args.folder();
@@ -73,6 +78,28 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     done.write_metrics()?;
     report::write_study(&done, out)
 }
+
+/// Random frames in place of the jobs.
+fn soak(study: &Study, args: &StudyArgs, frames: u32) -> Result<String, HarnessError> {
+    let refuse = |accepted: &str| {
+        Err(CliError::out_of_range("--soak", &frames.to_string(), accepted).into())
+    };
+    if study.name != SOAKED {
+        return refuse("left out of studies other than stability");
+    }
+    let scene = match args.scene.as_slice() {
+        [] => SOAK_SCENE.to_owned(),
+        [only] => only.clone(),
+        _ => return refuse("given with one --scene at most"),
+    };
+    let adapter = args.adapter.clone();
+    soak_alone(&SoakArgs { frames, seed: args.seed, from: 0, scene, adapter })
+}
+
+/// The study that soaks.
+const SOAKED: &str = "stability";
+/// The scene of a soak that names none.
+const SOAK_SCENE: &str = "town-small";
 
 /// The jobs that are chosen, those of this shard.
 fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, CliError> {
