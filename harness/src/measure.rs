@@ -2,8 +2,9 @@
 //! frame in turns.
 
 mod laps;
+mod plan;
 
-use laps::checked_poses;
+pub use plan::{Plan, Timetable};
 
 use assign::{Assignment, Counters, EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M};
 use shading::{
@@ -67,53 +68,8 @@ pub struct Timed {
     pub overflowed_frames: u32,
 }
 
-/// Which methods of a [`Contest`] are timed, by index.
-#[derive(Clone, Copy, Debug)]
-pub struct Timetable<'a> {
-    /// Those on the clock.
-    pub timed: &'a [usize],
-    /// Of those, the ones whose lists depend on the frames before: along a path they must see every
-    /// pose before the one that is compared.
-    pub remember: &'a [usize],
-    /// The one whose image is that of no culling; `None` if images are not compared.
-    pub reference: Option<usize>,
-}
-
 /// Is handed a frame's number, its images, method by method, and that of no culling.
 pub type Compare<'a> = dyn FnMut(u32, &[HdrImage], &HdrImage) -> Result<(), HarnessError> + 'a;
-
-/// Which frames to draw.
-#[derive(Clone, Copy, Debug)]
-pub struct Plan {
-    /// Frames of each method before the clock starts, at least: a GPU is warmed until its times are
-    /// steady ([`WarmUp`]). 0: no warm-up.
-    pub warmup: u32,
-    /// Frames of each method on the clock; along a path, poses of one lap.
-    pub timed: u32,
-    /// How often the camera goes along its path, one pose per frame; 0: it stands still.
-    pub laps: u32,
-    /// Frames whose images are compared, 8 at most. They differ, or follow each other.
-    pub checks: u32,
-    /// Whether the frames whose images are compared follow each other.
-    pub is_temporal: bool,
-    /// Decides the order of methods in each round.
-    pub seed: u64,
-    /// How fall-off ends.
-    pub cut: Cut,
-    /// Whether light operations are counted.
-    pub operations: bool,
-}
-
-impl Plan {
-    /// The frames whose images are compared: poses of a lap.
-    pub(crate) fn compared_frames(&self) -> Vec<u32> {
-        match (self.is_temporal, self.laps) {
-            (true, 0) => (0..self.checks).collect(),
-            (true, _) => (0..self.checks.min(self.timed)).collect(),
-            (false, _) => checked_poses(self.timed, self.checks),
-        }
-    }
-}
 
 /// Frames in which the pool of a method may grow to what its lists ask for.
 const MAX_SETTLING: u32 = 8;

@@ -47,6 +47,8 @@ pub(crate) struct Study {
     pub(crate) overall: fn(&Done) -> Html,
     /// The paper whose claims the study judges.
     pub(crate) paper: &'static Paper,
+    /// Whether the page repeats the warnings of jobs. Where each cell says what happened there, it does not.
+    pub(crate) tells_warnings: bool,
     /// What a reader must know before trusting a figure; the frame of the page adds its own notices.
     pub(crate) notices: fn(&Done) -> Vec<String>,
 }

@@ -32,5 +32,6 @@ pub(crate) const STUDY: Study = Study {
     parts: tables::parts,
     overall: |_| Html::default(),
     paper: &claims::PAPER,
+    tells_warnings: true,
     notices: times::notices,
 };

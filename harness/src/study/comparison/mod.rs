@@ -42,6 +42,7 @@ pub(crate) const STUDY: Study = Study {
     },
     overall: sizes::best_overall,
     paper: &claims::PAPER,
+    tells_warnings: true,
     notices: |done| {
         done.scenes().into_iter().flat_map(|scene| overview::ties(done, scene)).collect()
     },

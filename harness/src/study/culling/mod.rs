@@ -21,5 +21,6 @@ pub(crate) const STUDY: Study = Study {
     parts: |done, scene, charts, _| page::modes(done, scene, charts),
     overall: |_| Html::default(),
     paper: &claims::PAPER,
+    tells_warnings: true,
     notices: |_| Vec::new(),
 };

@@ -24,5 +24,6 @@ pub(crate) const STUDY: Study = Study {
     parts: page::places,
     overall: |_| Html::default(),
     paper: &claims::PAPER,
+    tells_warnings: true,
     notices: |_| Vec::new(),
 };

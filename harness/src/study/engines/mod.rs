@@ -33,6 +33,7 @@ pub(crate) const STUDY: Study = Study {
     parts: page::parts,
     overall: page::differences,
     paper: &NO_PAPER,
+    tells_warnings: true,
     notices: sentences::notices,
 };
 

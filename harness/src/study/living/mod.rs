@@ -33,5 +33,6 @@ pub(crate) const STUDY: Study = Study {
     },
     overall: |_| Html::default(),
     paper: &claims::PAPER,
+    tells_warnings: true,
     notices: |_| Vec::new(),
 };

@@ -243,7 +243,8 @@ fn notices(study: &Study, done: &Done, pictures_left_out: usize) -> Vec<String> 
     let of_job = |(job, results): (&'_ String, &'_ Results)| -> Vec<(String, String)> {
         results.warnings.iter().map(|warning| (warning.clone(), job.clone())).collect()
     };
-    for (warning, jobs) in grouped_by(done.results.iter().flat_map(of_job)) {
+    let told = done.results.iter().filter(|_| study.tells_warnings).flat_map(of_job);
+    for (warning, jobs) in grouped_by(told) {
         match jobs.len() {
             0..=ALIKE => notices.extend(jobs.iter().map(|job| format!("{job}: {warning}"))),
             count => notices.push(format!("{count} jobs: {warning}")),

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::jobs::SEPARATOR;
+use super::jobs::{FLAWED, SEPARATOR};
 use super::outcome::{Outcome, words};
 use crate::cli::Size;
 use crate::results::{Mode, Record, Results};
@@ -10,11 +10,6 @@ use crate::strategy::{Flaw, Role, StrategyId, engines, flaws, rows};
 use crate::study::data::Entry;
 use crate::study::job::Job;
 use crate::study::manifest::Done;
-
-/// The section of jobs with one frame.
-pub(crate) const STILL: &str = "still";
-/// The section of jobs with methods that fail on purpose.
-pub(crate) const FLAWED: &str = "flawed";
 
 /// One run of a method in a scenario.
 pub(crate) struct Case<'a> {

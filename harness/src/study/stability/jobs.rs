@@ -2,7 +2,6 @@
 
 use scenes::stability::{self, Move, PREFIX, Scenario};
 
-use super::cells::{FLAWED, STILL};
 use crate::bench::Bench;
 use crate::cli::{CliError, Size, StudyArgs};
 use crate::error::HarnessError;
@@ -10,6 +9,10 @@ use crate::strategy::{Flaw, StrategyId, engines, flaws};
 use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 
+/// The section of jobs with one frame.
+pub(crate) const STILL: &str = "still";
+/// The section of jobs with methods that fail on purpose.
+pub(crate) const FLAWED: &str = "flawed";
 /// What the section of frames over time starts with; the move follows.
 const OVER_TIME: &str = "over-time";
 
@@ -102,7 +105,11 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         let ids = ids.join(",");
         let options =
             [&["--strategies", ids.as_str(), "--truth", "full"], group[0].options].concat();
-        let options = [options, moved(way)].concat();
+        let mut options = [options, moved(way)].concat();
+        if matches!(way, Some(Move::Lights(_))) {
+            // The CPU must know the lights that a limit leaves out.
+            options.extend(["--light-order", "given"]);
+        }
         let flawed = job(id.clone(), FLAWED, &(ix + 1).to_string(), &options);
         jobs.push(flawed.with("flaws", &names.join(SEPARATOR)));
     }

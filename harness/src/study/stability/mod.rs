@@ -36,6 +36,7 @@ pub(crate) const STUDY: Study = Study {
     parts: page::parts,
     overall: |_| Html::default(),
     paper: &NO_PAPER,
+    tells_warnings: false,
     notices: sentences::notices,
 };
 

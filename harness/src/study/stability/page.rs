@@ -2,8 +2,8 @@
 
 use scenes::stability::{Figure, Scenario};
 
-use super::cells::{Case, Cell, Method, STILL, cell, flawed_methods, methods};
-use super::jobs::scenario_of;
+use super::cells::{Case, Cell, Method, cell, flawed_methods, methods};
+use super::jobs::{STILL, scenario_of};
 use super::matrix::anchor;
 use super::outcome::Outcome;
 use super::sentences::has_failed;

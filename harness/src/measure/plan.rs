@@ -1,0 +1,50 @@
+//! Which methods are timed, and which frames are drawn.
+
+use shading::Cut;
+
+use super::laps::checked_poses;
+
+/// Which methods of a [`Contest`](super::Contest) are timed, by index.
+#[derive(Clone, Copy, Debug)]
+pub struct Timetable<'a> {
+    /// Those on the clock.
+    pub timed: &'a [usize],
+    /// Of those, the ones whose lists depend on the frames before: along a path they must see every
+    /// pose before the one that is compared.
+    pub remember: &'a [usize],
+    /// The one whose image is that of no culling; `None` if images are not compared.
+    pub reference: Option<usize>,
+}
+
+/// Which frames to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Frames of each method before the clock starts, at least: a GPU is warmed until its times are
+    /// steady ([`WarmUp`](crate::drift::WarmUp)). 0: no warm-up.
+    pub warmup: u32,
+    /// Frames of each method on the clock; along a path, poses of one lap.
+    pub timed: u32,
+    /// How often the camera goes along its path, one pose per frame; 0: it stands still.
+    pub laps: u32,
+    /// Frames whose images are compared, 8 at most. They differ, or follow each other.
+    pub checks: u32,
+    /// Whether the frames whose images are compared follow each other.
+    pub is_temporal: bool,
+    /// Decides the order of methods in each round.
+    pub seed: u64,
+    /// How fall-off ends.
+    pub cut: Cut,
+    /// Whether light operations are counted.
+    pub operations: bool,
+}
+
+impl Plan {
+    /// The frames whose images are compared: poses of a lap.
+    pub(crate) fn compared_frames(&self) -> Vec<u32> {
+        match (self.is_temporal, self.laps) {
+            (true, 0) => (0..self.checks).collect(),
+            (true, _) => (0..self.checks.min(self.timed)).collect(),
+            (false, _) => checked_poses(self.timed, self.checks),
+        }
+    }
+}
