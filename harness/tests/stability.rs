@@ -7,7 +7,7 @@ use harness::cli::{Invocation, StudyArgs, parse};
 use harness::results::Results;
 use harness::study::{Done, study};
 
-/// Large lights near a wide view's border, and more than 32 lights in some tiles.
+/// More than 32 lights reach some tiles.
 const SCENARIO: &str = "stability:depth-discontinuity";
 
 fn args(out: &Path, words: &[&str]) -> (StudyArgs, Vec<String>) {
@@ -77,6 +77,8 @@ fn sound_methods_are_exact_and_flawed_ones_are_found() {
 fn soaks_belong_to_this_study() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut args, command) = args(folder.path(), &["--soak", "3"]);
+    let error = study(&args, &command).expect_err("refused").to_string();
+    assert!(error.contains("--soak is 3: it must be given without --out"), "{error}");
     args.study = "engines".into();
     let error = study(&args, &command).expect_err("refused").to_string();
     assert!(error.starts_with("--soak is 3: it must be left out of studies"), "{error}");

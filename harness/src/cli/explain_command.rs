@@ -7,6 +7,9 @@ use super::definition;
 /// Options that the picture decides, and not the command line.
 const OWN: [&str; 6] = ["strategies", "mode", "pixel", "path", "frames", "frame"];
 
+/// Options that draw layers over the surfaces.
+const LAYERS: [&str; 3] = ["transparent", "particles", "fog"];
+
 /// What a report knows of the picture whose pixels are to be explained.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explained<'a> {
@@ -22,7 +25,7 @@ pub struct Explained<'a> {
 
 /// The words of `lightbench explain` that show pixels of a comparison, up to and including `--pixel`: what follows is
 /// the pixel. `command` is the comparison's command line, program name first. `None` if that is the command line of
-/// something else.
+/// something else, or if layers are drawn over the pixels, which `explain` does not draw.
 pub fn explain_words(command: &[String], of: &Explained<'_>) -> Option<Vec<String>> {
     let program = definition();
     let [compare, explain] =
@@ -48,6 +51,9 @@ pub fn explain_words(command: &[String], of: &Explained<'_>) -> Option<Vec<Strin
         };
         let arg = compare.get_arguments().find(|arg| arg.get_long() == Some(option))?;
         let value = if is_whole || !takes_value(arg) { None } else { Some(words.next()?) };
+        if LAYERS.contains(&option) {
+            return None;
+        }
         if is_kept(option) {
             kept.extend([word].into_iter().chain(value).cloned());
         }

@@ -18,7 +18,8 @@ pub(crate) fn explain_command(
         strategy: record.strategy.as_str(),
         mode: setting.mode.name(),
         frames: setting.poses.filter(|_| setting.path_hash.is_some()),
-        frame,
+        // Without a path and a motion, all frames show the same.
+        frame: frame.filter(|_| setting.path_hash.is_some() || setting.motion.is_some()),
     };
     Some(shell_words(&explain_words(command, &explained)?))
 }

@@ -42,7 +42,7 @@ fn list(document: &str) -> (Html, usize) {
 }
 
 /// A line with its code, its emphasis and the texts of its links. A mark without its end is text.
-fn inline(line: &str) -> Html {
+pub(crate) fn inline(line: &str) -> Html {
     let mut shown = Html::default();
     let mut rest = line;
     while let Some(start) = rest.find(['`', '*', '[']) {

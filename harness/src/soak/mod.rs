@@ -14,7 +14,9 @@
 //! 4. After each round, everything that the round made is freed, and memory is looked at ([`memory`]).
 //!
 //! The first finding ends the soak. Its message gives the command that starts again at that round, which reproduces
-//! it: a round depends on no other.
+//! it: what a round draws depends on no other. A finding of memory may need the rounds before it.
+//!
+//! Every tenth round draws the first one again, to see whether memory grew, so nine in ten frames are new.
 //!
 //! The device and its compiled shaders are kept for [`REOPEN_EVERY`] rounds. Then the device is opened anew, because
 //! every combination of axes has shaders of its own, which would pile up. Device loss is not simulated.
@@ -147,8 +149,11 @@ fn finding(args: &SoakArgs, frame: u32, round: &Round, words: &str) -> HarnessEr
         true => String::new(),
         false => format!(" --scene {}", shell_words(std::slice::from_ref(&args.scene))),
     };
+    let adapter = args.adapter.as_ref().map_or_else(String::new, |adapter| {
+        format!(" --adapter {}", shell_words(std::slice::from_ref(adapter)))
+    });
     let again = format!(
-        "lightbench soak --seed {} --from {} --frames {ROUND_FRAMES}{scene}",
+        "lightbench soak --seed {} --from {} --frames {ROUND_FRAMES}{scene}{adapter}",
         args.seed,
         frame / ROUND_FRAMES * ROUND_FRAMES
     );

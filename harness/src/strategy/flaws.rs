@@ -71,11 +71,11 @@ const FLAWS: &[Flaw] = &[
                  2023",
     },
     Flaw {
-        name: "ranges from a threshold of diffuse light on glossy surfaces",
+        name: "ranges from a threshold of diffuse light",
         id: "SC-E/48x48x40",
         options: &["--cut", "never", "--threshold", "0.1"],
-        fails: "A mirror-like floor shows lights from beyond the reach of their diffuse light, so these highlights \
-                vanish, or are cut off at the edge of a cluster.",
+        fails: "Dim light is missing everywhere. On a mirror-like floor bright light is too: it shows lights from beyond \
+                the reach of their diffuse light, and their highlights vanish or are cut off at the edge of a cluster.",
         source: "Watrous 2024, Results, figure 3a",
     },
     Flaw {
@@ -123,7 +123,7 @@ const FLAWS: &[Flaw] = &[
     },
 ];
 
-/// What `lightbench list flaws` prints.
+/// The end of what `lightbench list strategies` prints.
 pub(super) fn list() -> String {
     flaws().map(entry).collect()
 }

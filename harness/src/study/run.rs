@@ -92,6 +92,17 @@ fn soak(study: &Study, args: &StudyArgs, frames: u32) -> Result<String, HarnessE
         [only] => only.clone(),
         _ => return refuse("given with one --scene at most"),
     };
+    let given = [
+        ("--out", args.out.is_some()),
+        ("--size", args.size.is_some()),
+        ("--only", !args.only.is_empty()),
+        ("--scene-scale", !args.scene_scale.is_empty()),
+        ("--motion", args.motion.motion.is_some()),
+        ("--quick", args.quick),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+        return refuse(&format!("given without {option}, which a soak does not read"));
+    }
     let adapter = args.adapter.clone();
     soak_alone(&SoakArgs { frames, seed: args.seed, from: 0, scene, adapter })
 }

@@ -29,7 +29,7 @@ pub struct Scenario {
     /// Why the renderer cannot draw the situation yet, and what that needs. The scene opens all the same, but
     /// does not show the failure.
     pub why_not: Option<&'static str>,
-    /// Whether it takes too long for quick runs on a software adapter, or asks for more rounds of a loop than one runs.
+    /// Whether it takes too long for quick runs on a software adapter.
     pub heavy: bool,
     pub(super) make: fn(&mut Kit),
 }

@@ -14,6 +14,7 @@ use crate::study::manifest::Done;
 /// One run of a method in a scenario.
 pub(crate) struct Case<'a> {
     pub(crate) job: &'a Job,
+    pub(crate) id: StrategyId,
     pub(crate) mode: Option<Mode>,
     pub(crate) outcome: Outcome,
     /// What was seen, or why it was refused.
@@ -31,6 +32,12 @@ impl Cell<'_> {
     /// The worst of its runs; `None` where it did not run.
     pub(crate) fn outcome(&self) -> Option<Outcome> {
         self.cases.iter().map(|case| case.outcome).max()
+    }
+
+    /// Why it refuses some runs, if it does not refuse all of them.
+    pub(crate) fn refuses_some(&self) -> Option<&Case<'_>> {
+        let refused = self.cases.iter().find(|case| case.outcome == Outcome::Refused)?;
+        (self.outcome() != Some(Outcome::Refused)).then_some(refused)
     }
 
     /// The run that shows its outcome best: the first of the worst.
@@ -88,6 +95,14 @@ impl Method {
         }
     }
 
+    /// Whether it fails in some scenarios only, and so tells what a scenario tests.
+    pub(crate) fn tells_scenarios(&self) -> bool {
+        match self {
+            Self::Sound(_) => true,
+            Self::Flawed(flaw) => flaw.options.is_empty() && !flaw.id.ends_with("/unordered"),
+        }
+    }
+
     /// Whether a job ran it.
     fn is_in(&self, job: &Job) -> bool {
         match self {
@@ -136,11 +151,13 @@ pub(crate) fn cell<'a>(done: &'a Done, scenario: &'a str, method: &Method) -> Ce
         for record in results.records.iter().filter(|record| record.strategy == id) {
             let entry = Some(Entry::new(job, record, &results.machine));
             let (outcome, words) = (method.outcome(record), words(record));
-            cases.push(Case { job, mode: Some(record.setting.mode), outcome, words, entry });
+            let (id, mode) = (id.clone(), Some(record.setting.mode));
+            cases.push(Case { job, id, mode, outcome, words, entry });
         }
         let refused = results.refused.iter().filter(|refused| refused.strategy == id.as_str());
         cases.extend(refused.map(|refused| Case {
             job,
+            id: id.clone(),
             mode: refused.mode,
             outcome: Outcome::Refused,
             words: refused.reason.clone(),

@@ -5,7 +5,7 @@ use scenes::stability::{self, Move, PREFIX, Scenario};
 use crate::bench::Bench;
 use crate::cli::{CliError, Size, StudyArgs};
 use crate::error::HarnessError;
-use crate::strategy::{Flaw, StrategyId, engines, flaws};
+use crate::strategy::{Flaw, Row, StrategyId, engines, flaws};
 use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 
@@ -93,8 +93,15 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
     // In the first of its moves: what fails still fails there too.
     let way = scenario.moves.first().copied();
     let id = way.map_or_else(|| scenario.id(), |way| scenario.id_with(way));
-    // A command is refused if one of its methods reads the depth of surfaces and cannot serve what lies before them.
-    let is_served = |flaw: &&Flaw| scenario.options.is_empty() || !reads_depth(flaw);
+    // A command is refused if one of its methods cannot serve what lies in front of surfaces: nothing that reads their
+    // depth serves fog, and tiles serve the rest.
+    let has_fog = scenario.options.contains(&"--fog");
+    let is_served = |flaw: &&Flaw| match row_of(flaw) {
+        Some(row) if !scenario.options.is_empty() && row.needs.depth => {
+            !has_fog && !row.parameters.contains(&"slices")
+        }
+        _ => true,
+    };
     for (ix, mut group) in by_options().into_iter().enumerate() {
         group.retain(is_served);
         if group.is_empty() {
@@ -116,10 +123,10 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
     Ok(jobs)
 }
 
-fn reads_depth(flaw: &Flaw) -> bool {
+fn row_of(flaw: &Flaw) -> Option<&'static Row> {
     let ids = engines::expand(flaw.id, [1, 1]).and_then(Result::ok);
     let id = ids.and_then(|ids| ids.into_iter().next()).unwrap_or_else(|| flaw.id.to_owned());
-    StrategyId::read(&id).row().is_none_or(|row| row.needs.depth)
+    StrategyId::read(&id).row()
 }
 
 /// Between the names of methods in the setting `flaws` of a job.

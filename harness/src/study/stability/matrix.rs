@@ -6,11 +6,12 @@ use super::cells::{Cell, Method, cell, flawed_methods, methods};
 use super::jobs::scenario_of;
 use super::outcome::Outcome;
 use crate::report::markup::{Html, html};
+use crate::results::Mode;
 use crate::study::manifest::Done;
 
 /// How to read the matrix of methods that should not fail.
-const SOUND: &str = "A row is a scenario, a column a method. A cell shows the worst that any of its runs showed: in both \
-                     modes, still and over time. Choose a cell to see what was measured there.";
+const SOUND: &str = "A row is a scenario, a column a method. A cell shows the worst that any of its runs showed: in the \
+                     modes that the method does not refuse, still and over time. Choose a cell to see what was measured there.";
 
 /// How to read the matrix of methods that fail on purpose.
 const BROKEN: &str = "These methods are wrong in ways that renderers have shipped. They are the negative control: a \
@@ -97,7 +98,11 @@ fn shown(scenario: &str, cell: &Cell<'_>) -> Html {
         return html!("<td></td>");
     };
     let name = cell.method.name();
-    let words = format!("{scenario}, {name}: {}: {}", outcome.name(), worst.words);
+    let refused = cell.refuses_some().map_or_else(String::new, |case| {
+        let mode = case.mode.map_or("some runs", Mode::name);
+        format!("; refuses {mode}: {}", case.words)
+    });
+    let words = format!("{scenario}, {name}: {}: {}{refused}", outcome.name(), worst.words);
     html!(
         "<td class=\"cell {}\"><a href=\"#{}\" title=\"{}\" aria-label=\"{}\">{}</a></td>",
         outcome.name(),

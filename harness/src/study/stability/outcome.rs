@@ -62,8 +62,8 @@ impl Outcome {
             Self::Untested => "no light reaches a visible sample, so nothing was tested",
             Self::Refused => "refused before the first frame, with the reason",
             Self::Exact => {
-                "no (light, sample) pair is missed, and the image is that of no culling in every bit (of rasterised \
-                 light volumes, within 0.1 %)"
+                "every image is that of no culling in every bit (of rasterised light volumes, within 0.1 %), and where lists \
+                 were checked, which is in still frames, no (light, sample) pair is missed"
             }
             Self::Lossy => "the method states that it loses light, and it did",
             Self::Wrong => {
@@ -84,9 +84,10 @@ pub(crate) fn words(record: &Record) -> String {
 
 fn exact_words(record: &Record) -> String {
     let mut words = Vec::new();
-    if let Some(pairs) = record.lists.checked_pairs {
-        words.push(format!("0 of {} pairs missed", number(pairs as f64)));
-    }
+    words.push(match record.lists.checked_pairs {
+        Some(pairs) => format!("0 of {} pairs missed", number(pairs as f64)),
+        None => "lists not checked".to_owned(),
+    });
     match record.image.differing_channels {
         Some(0) => words.push("0 channels differ".to_owned()),
         Some(_) => words.push(format!(

@@ -12,6 +12,7 @@ use crate::report::format::{ABSENT, difference, significant};
 use crate::report::markup::{Html, html};
 use crate::report::page::shell_words;
 use crate::report::picture_pair::{PicturePair, verdict};
+use crate::report::terms::inline;
 use crate::results::{Mode, Record, mean, standard_deviation};
 use crate::study::manifest::Done;
 use crate::study::page::figure::Charts;
@@ -60,7 +61,7 @@ impl FigureWords for Scenario {
         match self.figure {
             Figure::None => "",
             Figure::FalsePositives => {
-                "the figure below is what lists hold beyond the lights that reach their samples."
+                "the figure below is the listed lights that do not reach a sample, per sample."
             }
             Figure::ListedOverContributing => {
                 "the figure below is listed lights over contributing ones."
@@ -78,7 +79,12 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
     let value = |record: &Record| -> Option<String> {
         match scenario.figure {
             Figure::None => None,
-            Figure::FalsePositives | Figure::ListedOverContributing => {
+            Figure::FalsePositives => {
+                let listed = record.lists.listed_per_sample?;
+                let needed = record.lists.contributing_per_sample?;
+                Some(format!("{} per sample", significant(listed - needed)))
+            }
+            Figure::ListedOverContributing => {
                 let listed = record.lists.listed_per_sample?;
                 let needed = record.lists.contributing_per_sample.filter(|needed| *needed > 0.0)?;
                 Some(format!("{} listed per contributing light", significant(listed / needed)))
@@ -102,9 +108,13 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
     let line = |method: &Method| {
         let cell = cell(done, scenario.name, method);
         let deferred = |case: &&Case<'_>| case.mode == Some(Mode::Deferred);
-        let mut values =
-            cell.cases.iter().filter(deferred).filter_map(|case| value(case.entry?.record));
-        let value = values.next()?;
+        let of_case = |case: &Case<'_>| {
+            let value = value(case.entry?.record)?;
+            let section = case.job.section.replace('-', " ");
+            Some(if case.job.section == STILL { value } else { format!("{section}: {value}") })
+        };
+        let values: Vec<String> = cell.cases.iter().filter(deferred).filter_map(of_case).collect();
+        let value = Some(values.join("; ")).filter(|value| !value.is_empty())?;
         Some(html!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", method.name(), value))
     };
     let all = [methods(done), flawed_methods(done)].concat();
@@ -174,7 +184,7 @@ fn run(case: &Case<'_>) -> Html {
         case.job.section.replace('-', " "),
         mode,
         if case.words.is_empty() { ABSENT.to_owned() } else { case.words.clone() },
-        places.unwrap_or_default(),
+        places.as_deref().map(inline).unwrap_or_default(),
         command
     )
 }
@@ -189,9 +199,7 @@ fn command(case: &Case<'_>) -> String {
             words[at + 1] = value.to_owned();
         }
     };
-    if let Some(entry) = case.entry {
-        set("--strategies", &format!("None,{}", entry.record.strategy));
-    }
+    set("--strategies", &format!("None,{}", case.id));
     if let Some(mode) = case.mode {
         set("--mode", mode.name());
     }
@@ -203,9 +211,9 @@ fn command(case: &Case<'_>) -> String {
 fn pictures(cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
     let failed = |case: &&Case<'_>| matches!(case.outcome, Outcome::Lossy | Outcome::Wrong);
     let error = |case: &&Case<'_>| {
-        case.entry
-            .and_then(|entry| entry.record.image.errors.get("rel_mse").copied().flatten())
-            .unwrap_or(0.0)
+        // An error that is not finite is the largest.
+        let stored = case.entry.and_then(|entry| entry.record.image.errors.get("rel_mse").copied());
+        stored.map_or(0.0, |error| error.unwrap_or(f64::INFINITY))
     };
     let kept = |case: &&Case<'_>| {
         case.entry.is_some_and(|entry| entry.record.image.files.difference.is_some())

@@ -5,16 +5,24 @@ use super::jobs::scenario_of;
 use super::outcome::Outcome;
 use crate::report::format::{number, short_adapter};
 use crate::report::rank::listed;
+use crate::strategy::BASELINE;
 use crate::study::manifest::Done;
 
 /// How many cells failed among the methods that should not, and how many of the methods that fail on purpose did.
 pub(crate) fn headline(done: &Done) -> Option<String> {
     let results = done.results.values().next()?;
     let adapter = short_adapter(&results.machine.adapter);
-    let sound = cells(done, &methods(done));
+    let mut sound = methods(done);
+    // No culling is what the others are compared with.
+    sound.retain(|method| method.name() != BASELINE);
+    let sound = cells(done, &sound);
     let count =
         |outcome: Outcome| sound.iter().filter(|(_, cell)| cell.outcome() == Some(outcome)).count();
     let tested = sound.iter().filter(|(_, cell)| cell.outcome().is_some()).count();
+    let untested = match count(Outcome::Untested) {
+        0 => String::new(),
+        count => format!(", {} test nothing", number(count as f64)),
+    };
     let wrong = count(Outcome::Wrong);
     let wrongs = match wrong {
         0 => "none is wrong".to_owned(),
@@ -29,7 +37,8 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         all => format!(" Of {all} methods that fail on purpose, {failing} do fail."),
     };
     Some(format!(
-        "On {adapter}, of {} cells (a scenario and a method), {} are exact, {} refuse, and {wrongs}.{control}",
+        "On {adapter}, of {} cells (a scenario and a method that should not fail), {} are exact, {} refuse{untested}, and \
+         {wrongs}.{control}",
         number(tested as f64),
         number(count(Outcome::Exact) as f64),
         number(count(Outcome::Refused) as f64),
@@ -46,7 +55,9 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
             method.name()
         ));
     }
-    let flawed_cells = cells(done, &flawed);
+    // Light beyond its range and other last bits show nearly everywhere, so they say nothing of a scenario.
+    let telling = flawed.iter().filter(|method| method.tells_scenarios()).cloned();
+    let flawed_cells = cells(done, &telling.collect::<Vec<_>>());
     let mut quiet: Vec<String> = Vec::new();
     for scene in done.scenes() {
         let of_scene: Vec<&Cell<'_>> =
@@ -58,7 +69,8 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     }
     if !quiet.is_empty() {
         notices.push(format!(
-            "In {} no method that fails on purpose fails: {}.",
+            "In {}, no method that fails on purpose fails, except those that fail nearly everywhere (--cut never, and lists in \
+             random order without a limit): {}.",
             match quiet.len() {
                 1 => "1 scenario".to_owned(),
                 count => format!("{count} scenarios"),
