@@ -24,7 +24,7 @@ fn row(scenario: &Scenario) -> String {
         note(format!("moves: {}", moves.join(", ")));
     }
     if !scenario.options.is_empty() {
-        note(format!("drawn with {}", scenario.options.join(" ")));
+        note(format!("drawn only with {}", scenario.options.join(" ")));
     }
     if let Some(why_not) = scenario.why_not {
         note(format!("not shown yet: {why_not}"));

@@ -11,7 +11,7 @@
 use shading::HdrImage;
 
 use super::{Compare, Contest, Timetable, read};
-use crate::{cli::MAX_CHECKS, error::HarnessError, schedule::Orders, stage::Stage};
+use crate::{error::HarnessError, schedule::Orders, stage::Stage};
 
 /// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
 /// adapter.
@@ -98,32 +98,5 @@ impl Contest<'_> {
         for contender in &mut self.contenders {
             contender.painter.expire();
         }
-    }
-}
-
-/// The poses at which images are compared: an odd number of poses apart, so that lists used for 2, 4
-/// or 8 frames are seen at every age.
-pub(super) fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
-    let step = (poses / MAX_CHECKS).saturating_sub(1).max(1) | 1;
-    (0..poses).step_by(step as usize).take(checks as usize).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reused_lists_are_seen_at_every_age() {
-        for poses in [60, 120, 240, 1_200] {
-            let checks = checked_poses(poses, MAX_CHECKS);
-            assert_eq!(checks.len(), MAX_CHECKS as usize, "{poses}");
-            assert!(checks.iter().all(|pose| *pose < poses), "{poses}: {checks:?}");
-            let ages: std::collections::BTreeSet<u32> =
-                checks.iter().map(|pose| pose % 8).collect();
-            assert_eq!(ages.len(), 8, "{poses}: {checks:?}");
-        }
-        assert_eq!(checked_poses(1, MAX_CHECKS), [0]);
-        assert_eq!(checked_poses(3, MAX_CHECKS), [0, 1, 2]);
-        assert_eq!(checked_poses(240, 1), [0]);
     }
 }

@@ -66,7 +66,7 @@ fn open(bench: &mut Bench, scene: &StudyScene, motion: &[String]) -> Result<(), 
 /// How the lights of a study move that moves them at the user's wish, a sentence per motion; none if they stand
 /// still.
 pub(crate) fn notices(study: &Study, done: &Done) -> Vec<String> {
-    if matches!(study.motion, TakesMotion::BySection) {
+    if matches!(study.motion, TakesMotion::BySection) || !study.tells_warnings {
         return Vec::new();
     }
     let of_job = |results: &crate::results::Results| {
