@@ -138,7 +138,15 @@ function actions() {
   });
 }
 
+/** Opens what a link leads to, if it can be folded. */
+function openTarget() {
+  const target = document.getElementById(location.hash.slice(1));
+  if (target instanceof HTMLDetailsElement) target.open = true;
+}
+
 themeSwitch();
+openTarget();
+window.addEventListener("hashchange", openTarget);
 actions();
 showPictures(document);
 makeExplainable(document);

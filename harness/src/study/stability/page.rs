@@ -3,7 +3,7 @@
 use scenes::stability::{Figure, Scenario};
 
 use super::cells::{Case, Cell, Method, cell, flawed_methods, methods};
-use super::jobs::{STILL, scenario_of};
+use super::jobs::{FLAWED, STILL, scenario_of};
 use super::matrix::anchor;
 use super::outcome::Outcome;
 use super::sentences::has_failed;
@@ -20,7 +20,7 @@ use crate::study::page::part::Part;
 use crate::study::page::pictures::figure;
 use crate::study::page::shots::Shots;
 
-const NOTE: &str = "Each row is a method in one mode. Open it for the command that shows it again, and for its pictures \
+const NOTE: &str = "Each row is a method. Open it for the command that shows it again, and for its pictures \
                     where the image differs.";
 
 /// The parts of a scenario's section.
@@ -36,7 +36,7 @@ pub(crate) fn parts(done: &Done, scene: &str, _: &mut Charts, shots: &mut Shots<
             body += html!("<h4>{}</h4>\n<div class=\"cells\">\n{}</div>\n", title, rows);
         }
     }
-    vec![Part::new("cells", scenario.breaks, NOTE, body)]
+    vec![Part::new("cells", scenario.breaks.trim_end_matches('.'), NOTE, body)]
 }
 
 /// The picture of the scenario, and the figure that says more than "exact".
@@ -82,12 +82,12 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
             Figure::FalsePositives => {
                 let listed = record.lists.listed_per_sample?;
                 let needed = record.lists.contributing_per_sample?;
-                Some(format!("{} per sample", significant(listed - needed)))
+                Some(significant(listed - needed))
             }
             Figure::ListedOverContributing => {
                 let listed = record.lists.listed_per_sample?;
                 let needed = record.lists.contributing_per_sample.filter(|needed| *needed > 0.0)?;
-                Some(format!("{} listed per contributing light", significant(listed / needed)))
+                Some(significant(listed / needed))
             }
             Figure::TemporalError => temporal(record),
             Figure::FrameTime => {
@@ -111,7 +111,8 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
         let of_case = |case: &Case<'_>| {
             let value = value(case.entry?.record)?;
             let section = case.job.section.replace('-', " ");
-            Some(if case.job.section == STILL { value } else { format!("{section}: {value}") })
+            let is_plain = [STILL, FLAWED].contains(&case.job.section.as_str());
+            Some(if is_plain { value } else { format!("{section}: {value}") })
         };
         let values: Vec<String> = cell.cases.iter().filter(deferred).filter_map(of_case).collect();
         let value = Some(values.join("; ")).filter(|value| !value.is_empty())?;
