@@ -5,20 +5,20 @@
 //!
 //! # How
 //!
-//! 1. Frames come in rounds of [`ROUND_FRAMES`]. A round draws its lights, their motion and order, its image size, its
-//!    mode and its strategies ([`plan`]). All of that follows from the seed and the round's number.
+//! 1. Frames come in rounds of `ROUND_FRAMES`. A round draws its lights, their motion and order, its image size, its
+//!    mode and its strategies (`plan`). All of that follows from the seed and the round's number.
 //! 2. Each frame of a round has a camera of its own and a time of its own. Some frames have an entry pool that is far
 //!    too small.
 //! 3. Each strategy draws each frame once. Its lists are checked in f64 for missed lights, and its image is compared
 //!    with that of no culling, bit for bit. Only strategies that promise both take part.
-//! 4. After each round, everything that the round made is freed, and memory is looked at ([`memory`]).
+//! 4. After each round, everything that the round made is freed, and memory is looked at (`memory`).
 //!
 //! The first finding ends the soak. Its message gives the command that starts again at that round, which reproduces
 //! it: what a round draws depends on no other. A finding of memory may need the rounds before it.
 //!
 //! Every tenth round draws the first one again, to see whether memory grew, so nine in ten frames are new.
 //!
-//! The device and its compiled shaders are kept for [`REOPEN_EVERY`] rounds. Then the device is opened anew, because
+//! The device and its compiled shaders are kept for `REOPEN_EVERY` rounds. Then the device is opened anew, because
 //! every combination of axes has shaders of its own, which would pile up. Device loss is not simulated.
 
 mod frame;
