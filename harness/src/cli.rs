@@ -47,7 +47,7 @@ pub use named::name_of;
 pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};
 pub use report::ReportArgs;
-pub use soak::SoakArgs;
+pub use soak::{SOAK_SCENE, SoakArgs};
 pub use stage::{LightBox, StageArgs};
 pub use strategies::ALL;
 pub use study::{Shard, StudyArgs};

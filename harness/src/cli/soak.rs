@@ -4,6 +4,9 @@ use clap::Args;
 
 use super::values;
 
+/// The scene of a soak that names none.
+pub const SOAK_SCENE: &str = "town-small";
+
 /// The options of `lightbench soak`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct SoakArgs {
@@ -20,7 +23,7 @@ pub struct SoakArgs {
     pub from: u32,
 
     /// Scene to draw: a name from `lightbench list scenes`, or a .gltf or .glb file
-    #[arg(long, value_name = "NAME|FILE", default_value = "town-small", value_parser = values::text)]
+    #[arg(long, value_name = "NAME|FILE", default_value = SOAK_SCENE, value_parser = values::text)]
     pub scene: String,
 
     /// GPU to use, by any part of its name

@@ -5,6 +5,12 @@ use crate::digits::grouped;
 /// Shown where a metric was not measured.
 pub(crate) const ABSENT: &str = "\u{2013}";
 
+/// The text as part of a file's name or an anchor: letters and digits in lower case, all else `-`.
+pub(crate) fn slug(text: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    text.chars().map(plain).collect()
+}
+
 const MIB: f64 = 1_048_576.0;
 
 /// Three significant digits: `0.0361`, `14.0`, `1,230`.

@@ -32,7 +32,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     bench::Bench,
-    cli::{SoakArgs, StageArgs},
+    cli::{SOAK_SCENE, SoakArgs, StageArgs},
     error::HarnessError,
     report::{page::shell_words, significant},
     strategy::Method,
@@ -145,7 +145,7 @@ fn altered(gpu: &Gpu, method: Method, alter: &Alter<'_>) -> Method {
 
 /// The error that ends a soak.
 fn finding(args: &SoakArgs, frame: u32, round: &Round, words: &str) -> HarnessError {
-    let scene = match args.scene == "town-small" {
+    let scene = match args.scene == SOAK_SCENE {
         true => String::new(),
         false => format!(" --scene {}", shell_words(std::slice::from_ref(&args.scene))),
     };

@@ -5,7 +5,7 @@
 //! (`--cut never`), or the limit of an engine's default. No search, verdict or frontier ever picks an id with a
 //! flaw, and `all` does not include one.
 
-use super::{Axis, StrategyId};
+use super::{Axis, StrategyId, engines};
 
 /// A method that fails on purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +20,14 @@ pub struct Flaw {
     pub fails: &'static str,
     /// Where the failure is public.
     pub source: &'static str,
+}
+
+impl Flaw {
+    /// Its id in an image of that width and height, pixels: those of engines' defaults depend on the size.
+    pub fn id_at(&self, size_px: [u32; 2]) -> StrategyId {
+        let ids = engines::expand(self.id, size_px).and_then(Result::ok).unwrap_or_default();
+        StrategyId::read(ids.first().map_or(self.id, String::as_str))
+    }
 }
 
 /// All flaws, those of ids first.

@@ -14,7 +14,10 @@ use super::{
 use crate::{
     bench::Bench,
     checks::check_options,
-    cli::{self, CdiArgs, CliError, CompareArgs, Invocation, SoakArgs, StudyArgs, TruthArgs},
+    cli::{
+        self, CdiArgs, CliError, CompareArgs, Invocation, SOAK_SCENE, SoakArgs, StudyArgs,
+        TruthArgs,
+    },
     compare::compare_on,
     deep_image_run::measure,
     error::HarnessError,
@@ -109,8 +112,6 @@ fn soak(study: &Study, args: &StudyArgs, frames: u32) -> Result<String, HarnessE
 
 /// The study that soaks.
 const SOAKED: &str = "stability";
-/// The scene of a soak that names none.
-const SOAK_SCENE: &str = "town-small";
 
 /// The jobs that are chosen, those of this shard.
 fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, CliError> {

@@ -9,6 +9,7 @@ use crate::{
     bench::Bench,
     cli::{self, CliError, Invocation, Size, StudyArgs},
     error::HarnessError,
+    report::format::slug,
 };
 
 /// A scene with its scale.
@@ -40,10 +41,8 @@ impl StudyScene {
                 Some(folder) if stem == "scene" => folder.into_owned(),
                 _ => stem.into_owned(),
             };
-            let plain =
-                |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
             let name = name.strip_prefix(scenes::stability::PREFIX).unwrap_or(&name);
-            let mut name: String = name.chars().map(plain).collect();
+            let mut name = slug(name);
             while all.iter().any(|known| known.name == name) {
                 name += &format!("-{}", ix + 1);
             }

@@ -3,7 +3,7 @@
 use crate::chart::{
     BarChart, BarRow, Histogram, Segment, XyChart, histograms_svg, histograms_svg_file,
 };
-use crate::report::format::significant;
+use crate::report::format::{self, significant};
 use crate::report::markup::{Html, html};
 use crate::report::panels::{self, Panel};
 use crate::results::Record;
@@ -33,9 +33,7 @@ impl Charts {
     }
 
     fn figure(&mut self, slug: &str, title: &str, page: &str, file: String) -> Html {
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
-        let name: String = slug.chars().map(plain).collect();
-        let name = format!("{name}.svg");
+        let name = format!("{}.svg", format::slug(slug));
         // Charts escape their text themselves.
         let drawing = Html::trusted(page);
         let html = html!(

@@ -6,7 +6,7 @@ use super::jobs::{FLAWED, SEPARATOR};
 use super::outcome::{Outcome, words};
 use crate::cli::Size;
 use crate::results::{Mode, Record, Results};
-use crate::strategy::{Flaw, Role, StrategyId, engines, flaws, rows};
+use crate::strategy::{Flaw, Role, StrategyId, flaws, rows};
 use crate::study::data::Entry;
 use crate::study::job::Job;
 use crate::study::manifest::Done;
@@ -65,8 +65,7 @@ impl Method {
                 // The ids of engines' defaults depend on the size of the image.
                 let size = job.option("--size").and_then(|size| Size::from_str(size).ok());
                 let size = size.map_or([1, 1], |size| [size.width, size.height]);
-                let ids = engines::expand(flaw.id, size).and_then(Result::ok).unwrap_or_default();
-                StrategyId::read(ids.first().map_or(flaw.id, String::as_str))
+                flaw.id_at(size)
             }
         }
     }

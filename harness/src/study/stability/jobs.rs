@@ -5,7 +5,7 @@ use scenes::stability::{self, Move, PREFIX, Scenario};
 use crate::bench::Bench;
 use crate::cli::{CliError, Size, StudyArgs};
 use crate::error::HarnessError;
-use crate::strategy::{Flaw, Row, StrategyId, engines, flaws};
+use crate::strategy::{Flaw, flaws};
 use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 
@@ -96,7 +96,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
     // A command is refused if one of its methods cannot serve what lies in front of surfaces: nothing that reads their
     // depth serves fog, and tiles serve the rest.
     let has_fog = scenario.options.contains(&"--fog");
-    let is_served = |flaw: &&Flaw| match row_of(flaw) {
+    let is_served = |flaw: &&Flaw| match flaw.id_at([1, 1]).row() {
         Some(row) if !scenario.options.is_empty() && row.needs.depth => {
             !has_fog && !row.parameters.contains(&"slices")
         }
@@ -121,12 +121,6 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         jobs.push(flawed.with("flaws", &names.join(SEPARATOR)));
     }
     Ok(jobs)
-}
-
-fn row_of(flaw: &Flaw) -> Option<&'static Row> {
-    let ids = engines::expand(flaw.id, [1, 1]).and_then(Result::ok);
-    let id = ids.and_then(|ids| ids.into_iter().next()).unwrap_or_else(|| flaw.id.to_owned());
-    StrategyId::read(&id).row()
 }
 
 /// Between the names of methods in the setting `flaws` of a job.

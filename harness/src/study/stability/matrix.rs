@@ -5,6 +5,7 @@ use scenes::stability::{Group, Scenario};
 use super::cells::{Cell, Method, cell, flawed_methods, methods};
 use super::jobs::scenario_of;
 use super::outcome::Outcome;
+use crate::report::format::slug;
 use crate::report::markup::{Html, html};
 use crate::results::Mode;
 use crate::study::manifest::Done;
@@ -115,11 +116,9 @@ fn shown(scenario: &str, cell: &Cell<'_>) -> Html {
 
 /// Where the page shows what was seen of a method in a scenario.
 pub(crate) fn anchor(scenario: &str, method: &Method) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
-    let name: String = method.name().chars().map(plain).collect();
     let kind = match method {
         Method::Sound(_) => "method",
         Method::Flawed(_) => "flaw",
     };
-    format!("{scenario}-{kind}-{name}")
+    format!("{scenario}-{kind}-{}", slug(&method.name()))
 }

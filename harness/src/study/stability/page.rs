@@ -14,6 +14,7 @@ use crate::report::page::shell_words;
 use crate::report::picture_pair::{PicturePair, verdict};
 use crate::report::terms::inline;
 use crate::results::{Mode, Record, mean, standard_deviation};
+use crate::strategy::BASELINE;
 use crate::study::manifest::Done;
 use crate::study::page::figure::Charts;
 use crate::study::page::part::Part;
@@ -26,12 +27,14 @@ const NOTE: &str = "Each row is a method. Open it for the command that shows it 
 /// The parts of a scenario's section.
 pub(crate) fn parts(done: &Done, scene: &str, _: &mut Charts, shots: &mut Shots<'_>) -> Vec<Part> {
     let Some(scenario) = scenario_of(scene) else { return Vec::new() };
-    let mut body = about(done, scenario, shots);
-    for (title, methods) in
-        [("Methods", methods(done)), ("Methods that fail on purpose", flawed_methods(done))]
-    {
-        let all: Vec<Cell<'_>> = methods.iter().map(|method| cell(done, scene, method)).collect();
-        let rows: Html = all.iter().map(|cell| shown(scene, cell, shots)).collect();
+    let cells = |methods: Vec<Method>| -> Vec<Cell<'_>> {
+        methods.iter().map(|method| cell(done, scene, method)).collect()
+    };
+    let (sound, flawed) = (cells(methods(done)), cells(flawed_methods(done)));
+    let mut body =
+        picture(scenario, &sound, shots) + figures(scenario, sound.iter().chain(&flawed));
+    for (title, cells) in [("Methods", &sound), ("Methods that fail on purpose", &flawed)] {
+        let rows: Html = cells.iter().map(|cell| shown(scene, cell, shots)).collect();
         if !rows.is_empty() {
             body += html!("<h4>{}</h4>\n<div class=\"cells\">\n{}</div>\n", title, rows);
         }
@@ -39,43 +42,31 @@ pub(crate) fn parts(done: &Done, scene: &str, _: &mut Charts, shots: &mut Shots<
     vec![Part::new("cells", scenario.breaks.trim_end_matches('.'), NOTE, body)]
 }
 
-/// The picture of the scenario, and the figure that says more than "exact".
-fn about(done: &Done, scenario: &Scenario, shots: &mut Shots<'_>) -> Html {
-    let none = methods(done).into_iter().find(|method| method.name() == crate::strategy::BASELINE);
-    let picture = none.and_then(|none| {
-        let cell = cell(done, scenario.name, &none);
+/// The scenario without culling, and what the figure below it is about.
+fn picture(scenario: &Scenario, sound: &[Cell<'_>], shots: &mut Shots<'_>) -> Html {
+    let none = sound.iter().find(|cell| cell.method.name() == BASELINE);
+    let picture = none.and_then(|cell| {
         let case = cell.cases.iter().find(|case| case.job.section == STILL)?;
-        let file = case.entry?.record.image.files.tone_mapped.clone()?;
-        shots.file(&case.job.name, &file)
+        shots.file(&case.job.name, case.entry?.record.image.files.tone_mapped.as_deref()?)
     });
-    figure(picture, "No culling", scenario.figure_words()) + figures(done, scenario)
-}
-
-/// What the figure of a scenario is about.
-trait FigureWords {
-    fn figure_words(&self) -> &'static str;
-}
-
-impl FigureWords for Scenario {
-    fn figure_words(&self) -> &'static str {
-        match self.figure {
-            Figure::None => "",
-            Figure::FalsePositives => {
-                "the figure below is the listed lights that do not reach a sample, per sample."
-            }
-            Figure::ListedOverContributing => {
-                "the figure below is listed lights over contributing ones."
-            }
-            Figure::TemporalError => {
-                "the figure below is how much the error changes from frame to frame."
-            }
-            Figure::FrameTime => "the figure below is the spread of the time to assign and shade.",
+    let words = match scenario.figure {
+        Figure::None => "",
+        Figure::FalsePositives => {
+            "the figure below is the listed lights that do not reach a sample, per sample."
         }
-    }
+        Figure::ListedOverContributing => {
+            "the figure below is listed lights over contributing ones."
+        }
+        Figure::TemporalError => {
+            "the figure below is how much the error changes from frame to frame."
+        }
+        Figure::FrameTime => "the figure below is the spread of the time to assign and shade.",
+    };
+    figure(picture, "No culling", words)
 }
 
 /// The figure of each method, where one figure says more.
-fn figures(done: &Done, scenario: &Scenario) -> Html {
+fn figures<'a>(scenario: &Scenario, cells: impl Iterator<Item = &'a Cell<'a>>) -> Html {
     let value = |record: &Record| -> Option<String> {
         match scenario.figure {
             Figure::None => None,
@@ -105,8 +96,7 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
             }
         }
     };
-    let line = |method: &Method| {
-        let cell = cell(done, scenario.name, method);
+    let line = |cell: &Cell<'_>| {
         let deferred = |case: &&Case<'_>| case.mode == Some(Mode::Deferred);
         let of_case = |case: &Case<'_>| {
             let value = value(case.entry?.record)?;
@@ -116,10 +106,9 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
         };
         let values: Vec<String> = cell.cases.iter().filter(deferred).filter_map(of_case).collect();
         let value = Some(values.join("; ")).filter(|value| !value.is_empty())?;
-        Some(html!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", method.name(), value))
+        Some(html!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", cell.method.name(), value))
     };
-    let all = [methods(done), flawed_methods(done)].concat();
-    let rows: Html = all.iter().filter_map(line).collect();
+    let rows: Html = cells.filter_map(line).collect();
     if rows.is_empty() {
         return Html::default();
     }
