@@ -1,6 +1,6 @@
 //! A renderer of your own that uses dense clusters: a plane seen from above, and one light loop.
 //!
-//! Run it with `cargo run -p assign-clustered --example own_renderer`. It draws a plane under 500 lights with a
+//! Run it with `cargo run -p lightbench-assign-clustered --example own_renderer`. It draws a plane under 500 lights with a
 //! compute shader that uses only the look-up of lightbench. It prints how many lights each pixel looped over.
 
 use std::error::Error;

@@ -72,7 +72,7 @@
 //! | box, NP | 0.0 | 16.7 | 12.5 | 7.6 | 5.8 | 2.1 | 8.6 | 7.3 |
 //! | oriented box, NPT | 0.0 | 16.5 | 11.5 | 7.5 | 5.5 | 2.0 | 8.8 | 7.3 |
 //!
-//! Measured on 2026-11-25 by `cargo test -p assign --test intersect rates -- --nocapture`. That
+//! Measured on 2026-11-25 by `cargo test -p lightbench-assign --test intersect rates -- --nocapture`. That
 //! test fails if this table is off by more than 0.3.
 
 mod aabb;

@@ -1,5 +1,5 @@
 //! How often each test says "reaches" for a light that does not reach: the table in
-//! `assign::intersect`. To print it: `cargo test -p assign --test intersect rates -- --nocapture`.
+//! `assign::intersect`. To print it: `cargo test -p lightbench-assign --test intersect rates -- --nocapture`.
 
 use assign::{Emitter, FrustumTests, Light, LightShape, View};
 use glam::{DVec3, Mat3, Vec2, Vec3};
