@@ -134,3 +134,8 @@ pub use occupancy::Occupancy;
 pub use slices::Slices;
 pub use specular_cut::{PAPERS_LOBE_DEGREES, SpecularCut};
 pub use z_bins::{Z_BINS_WESL, ZBins};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -124,3 +124,8 @@ pub use grid_box::GridBox;
 pub use hash_table::{HASHED_WESL, HashCellsUniform, TableUse, fill_source};
 pub use hashed::HashedCells;
 pub use visible::{AskedCells, visible_source};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -46,3 +46,8 @@ mod per_model;
 
 pub use parts::{ModelRecord, Parts};
 pub use per_model::{MODELS_WESL, PerModel};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

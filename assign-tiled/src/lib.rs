@@ -65,3 +65,8 @@ pub use tile_bounds::bounds_source;
 pub use tile_wesl::tile_wesl;
 pub use tiled::Tiled;
 pub use tiles::{TileDepths, TileSize, TilesUniform};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

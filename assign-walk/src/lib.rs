@@ -51,3 +51,8 @@
 mod walk;
 
 pub use walk::{Walk, walk_wesl};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -52,6 +52,11 @@ impl Gpu {
     ///
     /// The device has WebGPU's default limits, buffers as large as the adapter allows, and
     /// timestamp queries if the adapter has them.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] if the program enables no back end of wgpu,
+    /// [`AssignError::NoAdapter`], [`AssignError::UnknownAdapter`] or [`AssignError::NoDevice`].
     pub fn open(name: Option<&str>) -> Result<Self, AssignError> {
         let adapters = enumerate()?;
         let wanted = name.unwrap_or_default().to_lowercase();
@@ -72,7 +77,12 @@ impl Gpu {
     }
 
     /// A device of wgpu's noop back end, which checks every call and runs none.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] if the program does not enable wgpu's feature `noop`.
     pub fn noop() -> Result<Self, AssignError> {
+        compiled_back_ends(wgpu::Backends::NOOP, "noop")?;
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::NOOP;
         descriptor.backend_options.noop.enable = true;
@@ -281,7 +291,8 @@ impl Gpu {
 
 /// All adapters, fastest kind first; at least one.
 fn enumerate() -> Result<Vec<wgpu::Adapter>, AssignError> {
-    let backends = wgpu::Backends::all() - wgpu::Backends::NOOP;
+    let any = wgpu::Backends::all() - wgpu::Backends::NOOP;
+    let backends = compiled_back_ends(any, "vulkan, metal, dx12 or gles")?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
     // GPU-based validation and debug layers would slow every measured pass.
@@ -290,9 +301,26 @@ fn enumerate() -> Result<Vec<wgpu::Adapter>, AssignError> {
     let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     if adapters.is_empty() {
-        return Err(AssignError::NoAdapter { looked_for: "looked for Vulkan".into() });
+        let names: Vec<&str> = backends.iter_names().map(|(name, _)| name).collect();
+        return Err(AssignError::NoAdapter { looked_for: format!("looked for {}", names.join(", ")) });
     }
     Ok(adapters)
+}
+
+/// Those of the wanted back ends that the program is compiled with; at least one. wgpu panics without any.
+fn compiled_back_ends(
+    wanted: wgpu::Backends,
+    features: &str,
+) -> Result<wgpu::Backends, AssignError> {
+    let compiled = wanted & wgpu::Instance::enabled_backend_features();
+    if compiled.is_empty() {
+        return Err(AssignError::Parameter {
+            field: "back end of wgpu".into(),
+            value: "none".into(),
+            accepted: format!("{features}: enable one of these features of wgpu in the program"),
+        });
+    }
+    Ok(compiled)
 }
 
 fn rank(device_type: wgpu::DeviceType) -> u32 {

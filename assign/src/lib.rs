@@ -74,6 +74,9 @@ mod unordered;
 mod view;
 mod window;
 
+// Their types stand in this crate's interface, so a renderer may take them from here.
+pub use {glam, wgpu};
+
 pub use assignment::{Assignment, Lookup};
 pub use cull::{Culler, CullerDescriptor};
 pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSource};
@@ -116,3 +119,8 @@ pub use touched::Touched;
 pub use unordered::Unordered;
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};
 pub use window::{MIN_DISTANCE_2, fall_off, range_window};
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,15 +4,18 @@
 //! close in every list and in memory, and boxes around consecutive lights are small: see
 //! [`light_nodes`](crate::light_nodes).
 
-use std::{fmt, str::FromStr, time::Duration};
+#[cfg(feature = "still-lights")]
+mod leaves;
+
+use std::{fmt, str::FromStr};
 
 use glam::Vec3;
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 
-use crate::{AssignError, Light, light_nodes::light_box};
+use crate::{AssignError, Light};
 
 /// The order of lights in the buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum LightOrder {
     /// The renderer's order.
     #[default]
@@ -20,7 +23,8 @@ pub enum LightOrder {
     /// By the Morton code of the lights' positions, 21 bits per axis.
     Morton,
     /// The leaves, depth first, of a bounding volume hierarchy over the lights' supports. The CPU
-    /// builds it, so it suits lights that do not move.
+    /// builds it, so it suits lights that do not move. It needs the feature `still-lights`.
+    #[cfg(feature = "still-lights")]
     Bvh,
     /// By a code of the lights' positions. The GPU sorts the lights and builds the hierarchy, on the
     /// clock: see [`LightBuffer::record`](crate::LightBuffer::record).
@@ -38,9 +42,8 @@ pub enum LightOrder {
     },
 }
 
-/// The most lights at one place for which a hierarchy is built. The search for pairs to merge is
-/// quadratic in coincident boxes.
-const MOST_COINCIDENT: usize = 20_000;
+/// The order that only the feature `still-lights` has, as messages list it.
+const BVH: &str = if cfg!(feature = "still-lights") { "bvh, " } else { "" };
 
 impl LightOrder {
     /// Whether the GPU sorts the lights.
@@ -56,7 +59,8 @@ impl LightOrder {
                 (0..lights.len() as u32).collect()
             }
             Self::Morton => morton(lights),
-            Self::Bvh => bvh(lights),
+            #[cfg(feature = "still-lights")]
+            Self::Bvh => leaves::in_order(lights),
         }
     }
 }
@@ -93,71 +97,13 @@ fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-fn bvh(lights: &[Light]) -> Vec<u32> {
-    if lights.len() < 2 || most_coincident(lights) > MOST_COINCIDENT {
-        return morton(lights);
-    }
-    let boxes: Vec<Aabb> = lights
-        .iter()
-        .map(|light| {
-            let (min, max) = light_box(light);
-            Aabb::new(min.into(), max.into())
-        })
-        .collect();
-    if lights.len() > MOST_COINCIDENT {
-        let order = morton(lights);
-        if is_row(order.iter().map(|&light| boxes[light as usize]).collect()) {
-            return order;
-        }
-    }
-    let bvh = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-    let mut order = Vec::with_capacity(lights.len());
-    let mut open = vec![0_u32];
-    while let Some(node) = open.pop() {
-        let Some(node) = bvh.nodes.get(node as usize) else { continue };
-        if node.prim_count > 0 {
-            let first = node.first_index as usize;
-            order.extend(&bvh.primitive_indices[first..first + node.prim_count as usize]);
-        } else {
-            open.extend([node.first_index + 1, node.first_index]);
-        }
-    }
-    // Falls back to Morton order if the hierarchy lost or repeated a light.
-    let mut seen = vec![false; lights.len()];
-    order.retain(|&light| {
-        seen.get_mut(light as usize).is_some_and(|seen| !std::mem::replace(seen, true))
-    });
-    if order.len() == lights.len() { order } else { morton(lights) }
-}
-
-/// Whether most boxes are equally close to both neighbours, as in a row of equal lights. There too,
-/// the search merges only one pair at a time. Pairs, groups of four and so on may form such a row
-/// as well.
-fn is_row(mut boxes: Vec<Aabb>) -> bool {
-    while boxes.len() > MOST_COINCIDENT {
-        let costs: Vec<f32> = boxes.windows(2).map(|w| w[0].union(&w[1]).half_area()).collect();
-        let ties = costs.windows(2).filter(|w| w[0] == w[1]).count();
-        if 2 * ties > boxes.len() {
-            return true;
-        }
-        boxes = boxes.chunks_exact(2).map(|pair| pair[0].union(&pair[1])).collect();
-    }
-    false
-}
-
-/// The most lights that share one Morton code.
-fn most_coincident(lights: &[Light]) -> usize {
-    let mut codes = morton_codes(lights);
-    codes.sort_unstable();
-    codes.chunk_by(|a, b| a == b).map(<[u64]>::len).max().unwrap_or(0)
-}
-
 impl fmt::Display for LightOrder {
     /// As [`FromStr`] reads it: `gpu8` for lights that the GPU sorts in every eighth frame.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Given => f.write_str("given"),
             Self::Morton => f.write_str("morton"),
+            #[cfg(feature = "still-lights")]
             Self::Bvh => f.write_str("bvh"),
             Self::Gpu { every: 1 } => f.write_str("gpu"),
             Self::Gpu { every } => write!(f, "gpu{every}"),
@@ -183,14 +129,16 @@ impl FromStr for LightOrder {
         match (lower.as_str(), gpu) {
             ("given", _) => Ok(Self::Given),
             ("morton", _) => Ok(Self::Morton),
+            #[cfg(feature = "still-lights")]
             ("bvh", _) => Ok(Self::Bvh),
             (_, Some(order)) => Ok(order),
             _ => Err(AssignError::Parameter {
                 field: "light order".into(),
                 value: text.into(),
-                accepted: "given, morton, bvh, gpu, gpuN for a sort in every Nth frame, or gpuN% for one as \
-                           soon as boxes may have grown by N percent"
-                    .into(),
+                accepted: format!(
+                    "given, morton, {BVH}gpu, gpuN for a sort in every Nth frame, or gpuN% for one as soon as \
+                     boxes may have grown by N percent"
+                ),
             }),
         }
     }
@@ -199,6 +147,7 @@ impl FromStr for LightOrder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light_nodes::light_box;
 
     fn lights(count: u32) -> Vec<Light> {
         (0..count)

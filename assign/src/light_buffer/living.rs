@@ -78,7 +78,7 @@ impl Living {
         let (field, number) = match order {
             LightOrder::Gpu { every } => ("frames between two sorts of the lights", every),
             LightOrder::GpuGrown { percent } => ("growth of boxes, percent", percent),
-            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => return Ok(None),
+            _ => return Ok(None),
         };
         if number == 0 {
             return Err(AssignError::Parameter {
@@ -212,7 +212,7 @@ impl Living {
                 travel.jumps != self.sorted_at.jumps
                     || growth_m > f64::from(percent) * 0.01 * box_side_m(bounds, lights)
             }
-            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => false,
+            _ => false,
         };
         let sorts = next == 0 || is_time;
         self.age = Some(if sorts { 0 } else { next });

@@ -21,9 +21,7 @@ pub(crate) fn motion_words(setting: &Setting) -> Option<String> {
             format!("sorted when boxes may have grown by {percent} %")
         }
         Some(LightOrder::Given) => "in the order of the scene".to_owned(),
-        Some(order @ (LightOrder::Morton | LightOrder::Bvh)) => {
-            format!("ordered by the CPU ({order})")
-        }
+        Some(order) => format!("ordered by the CPU ({order})"),
         None => "in an unknown order".to_owned(),
     };
     let speed = rounded(motion.speed_m_s);
