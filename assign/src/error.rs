@@ -7,6 +7,7 @@ use crate::ViewError;
 /// Why a strategy cannot make lists. Errors come before the first pass of a frame; they never
 /// become a wrong image.
 #[derive(Clone, Debug, Error)]
+#[non_exhaustive]
 pub enum AssignError {
     /// wgpu finds no adapter.
     #[error(

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why a light cannot be used. Such a light is left out and counted, never uploaded.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LightFault {
     /// A field is NaN or infinite.
     #[error("{field} is {value}: it must be finite")]

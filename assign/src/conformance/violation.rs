@@ -214,6 +214,7 @@ impl fmt::Display for Report {
 /// Why a strategy does not conform. `Debug` prints the same as `Display`, so that a failing
 /// `expect` is readable.
 #[derive(Clone, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConformanceError {
     /// No case has that name.
     #[error("no conformance case is named {0}")]
