@@ -54,6 +54,8 @@ fn unusual_views_are_exact_and_show_what_they_promise() {
         ("split-screen", methods),
         ("mirrored-view", methods),
         ("mirrored-view", drawn),
+        ("oblique-near-plane", methods),
+        ("oblique-near-plane", drawn),
         ("infinite-far", methods),
         ("orthographic-near-0", methods),
         ("standard-depth", methods),
