@@ -109,7 +109,8 @@ impl Optics {
 
     fn check(&self) -> Result<(), CliError> {
         if self.framing.clip_plane.is_some() && self.near_from == PlaneSource::Option {
-            let accepted = "left out: the near plane of this scene's camera is oblique, and lies on a mirror";
+            let accepted =
+                "left out: the near plane of this scene's camera is oblique, and lies on a mirror";
             return Err(CliError::out_of_range("--near", &self.near_m.to_string(), accepted));
         }
         match self.far {

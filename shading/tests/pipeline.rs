@@ -76,9 +76,12 @@ fn a_pre_pass_and_ids_in_the_g_buffer_change_no_bit() {
     let oblique = common::oblique([96, 64]);
     let mask =
         View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
-    for (name, view) in
-        [("reversed", common::view([96, 64])), ("standard", standard), ("mask", mask), ("oblique", oblique)]
-    {
+    for (name, view) in [
+        ("reversed", common::view([96, 64])),
+        ("standard", standard),
+        ("mask", mask),
+        ("oblique", oblique),
+    ] {
         for pair in [[Mode::Forward, Mode::ForwardNoPrepass], [Mode::Deferred, Mode::DeferredIds]] {
             let [(reference, samples), (image, _)] =
                 pair.map(|mode| draw(&gpu, &view, &lights, mode));

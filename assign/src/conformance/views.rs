@@ -87,8 +87,7 @@ pub(super) fn own_matrices() -> View {
     let plain = standard(0.1, Some(40.0));
     let mut rows = (plain.view_to_clip() * flip).transpose();
     rows.z_axis = 2.0 * rows.z_axis - rows.w_axis;
-    let made =
-        View::from_gl_matrices(flip * plain.world_to_view, rows.transpose(), plain.viewport);
+    let made = View::from_gl_matrices(flip * plain.world_to_view, rows.transpose(), plain.viewport);
     // The case fails with a view that is refused.
     made.unwrap_or(View { near_m: f32::NAN, ..plain })
 }

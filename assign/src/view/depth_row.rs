@@ -114,8 +114,12 @@ impl View {
         let in_front = |x: f64, y: f64| {
             let corner = match (perspective, self.far_m) {
                 // Per metre of view depth.
-                (true, far_m) => DVec4::new(x, y, -1.0, far_m.map_or(0.0, |far_m| 1.0 / f64::from(far_m))),
-                (false, far_m) => DVec4::new(x, y, -f64::from(far_m.unwrap_or(self.near_m + 1.0)), 1.0),
+                (true, far_m) => {
+                    DVec4::new(x, y, -1.0, far_m.map_or(0.0, |far_m| 1.0 / f64::from(far_m)))
+                }
+                (false, far_m) => {
+                    DVec4::new(x, y, -f64::from(far_m.unwrap_or(self.near_m + 1.0)), 1.0)
+                }
             };
             plane.dot(corner)
         };
@@ -183,7 +187,9 @@ impl View {
         // Image y points down, so the upper left corner of the window is (min.x, max.y).
         let per_pixel = row.xy().as_dvec2() * (max - min) * DVec2::new(1.0, -1.0) / size;
         let upper_left = row.xy().as_dvec2().dot(DVec2::new(min.x, max.y));
-        DVec3::new(per_pixel.x, per_pixel.y, upper_left - per_pixel.dot(origin)).as_vec3().to_array()
+        DVec3::new(per_pixel.x, per_pixel.y, upper_left - per_pixel.dot(origin))
+            .as_vec3()
+            .to_array()
     }
 
     /// Checks that `depth_row` agrees with the other fields.
@@ -191,17 +197,20 @@ impl View {
         let Some(given) = self.depth_row else {
             return Ok(());
         };
-        let fail = |accepted| {
-            Err(ViewError { field: "depth_row", value: given.to_string(), accepted })
-        };
+        let fail =
+            |accepted| Err(ViewError { field: "depth_row", value: given.to_string(), accepted });
         if !given.is_finite() {
             return fail("finite");
         }
         let (perspective, min, max) = self.projection.window();
         if self.row().direction() != Some(self.depth) {
             return fail(match perspective {
-                true => "of the direction of `depth`: w below 0 for standard, above 0 for reversed (the eye lies behind the near plane)",
-                false => "of the direction of `depth`: z below 0 for standard, above 0 for reversed",
+                true => {
+                    "of the direction of `depth`: w below 0 for standard, above 0 for reversed (the eye lies behind the near plane)"
+                }
+                false => {
+                    "of the direction of `depth`: z below 0 for standard, above 0 for reversed"
+                }
             });
         }
         let Some((near_m, far_m)) = self.row().span_m([min.as_dvec2(), max.as_dvec2()], 0.0) else {

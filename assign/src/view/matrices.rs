@@ -269,7 +269,10 @@ fn check_projection(view_to_clip: DMat4) -> Result<(bool, DMat4), ViewError> {
             return fail([row, row], "other than 0: the image has a width and a height");
         }
         if values[axes[1 - row]] != 0.0 {
-            return fail([row, axes[1 - row]], "0: turn the camera by world_to_view, without shear");
+            return fail(
+                [row, axes[1 - row]],
+                "0: turn the camera by world_to_view, without shear",
+            );
         }
         if perspective && values.w != 0.0 {
             return fail([row, 3], "0 in a perspective projection: move the eye by world_to_view");

@@ -76,7 +76,9 @@ fn point(view: &View, [u, v, share]: [f64; 3]) -> Option<DVec3> {
     let (near_m, far_m) = view.shown_m(window)?;
     let far_m = far_m.min(1e3 * near_m.max(0.1));
     let depth_m = near_m + share * (far_m - near_m);
-    Some(view.world_to_view.as_dmat4().inverse().transform_point3(point_view(view, window, depth_m)))
+    Some(
+        view.world_to_view.as_dmat4().inverse().transform_point3(point_view(view, window, depth_m)),
+    )
 }
 
 fn clip(world_to_view: Mat4, view_to_clip: Mat4, point: DVec3) -> DVec3 {

@@ -72,8 +72,8 @@ fn samples(view: &View) -> Vec<[f32; 4]> {
     let port = view.viewport;
     (0..128_u32)
         .map(|ix| {
-            let [u, v, w] = [0.618_034, 0.754_878, 0.569_84]
-                .map(|step| (f64::from(ix) * step).fract() as f32);
+            let [u, v, w] =
+                [0.618_034, 0.754_878, 0.569_84].map(|step| (f64::from(ix) * step).fract() as f32);
             let at = |first: u32, size: u32, share: f32| {
                 first as f32 + (share * size as f32).floor().min(size as f32 - 1.0) + 0.5
             };
@@ -93,7 +93,9 @@ fn samples(view: &View) -> Vec<[f32; 4]> {
 fn plain_near_planes_keep_their_bits() {
     let mut rebuilder = Rebuilder::new();
     for view in drawn(&plain(), 40) {
-        for (sample, [found, wanted]) in samples(&view).iter().zip(rebuilder.run(&view, &samples(&view))) {
+        for (sample, [found, wanted]) in
+            samples(&view).iter().zip(rebuilder.run(&view, &samples(&view)))
+        {
             assert_eq!(found.to_bits(), wanted.to_bits(), "{sample:?} in {view:?}");
         }
     }
@@ -116,14 +118,22 @@ fn oblique_near_planes_give_the_depths_of_the_inverse_projection() {
             let [min, max] = window_of(&view);
             let window = min + (max - min) * DVec2::new(uv.x, 1.0 - uv.y);
             let Some((near_m, far_m)) = view.shown_m(window) else { continue };
-            let point = from_clip.project_point3(glam::DVec3::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, depth_clip));
+            let point = from_clip.project_point3(glam::DVec3::new(
+                2.0 * uv.x - 1.0,
+                1.0 - 2.0 * uv.y,
+                depth_clip,
+            ));
             let wanted = -point.z;
             if !(near_m * 0.999..=far_m.min(1e4) * 1.001).contains(&wanted) {
                 continue;
             }
             // Rounding of the tilt, at the pixel's distance from the origin of the target.
             let row = view.view_to_clip().row(2).as_dvec4();
-            let size = 1.0 + row.z.abs().min(1e9) + f64::from(tilt[0]) * x + f64::from(tilt[1]) * y + f64::from(tilt[2]);
+            let size = 1.0
+                + row.z.abs().min(1e9)
+                + f64::from(tilt[0]) * x
+                + f64::from(tilt[1]) * y
+                + f64::from(tilt[2]);
             let allowed = match view.projection {
                 assign::Projection::Perspective { .. } => {
                     wanted * (1e-6 + 8.0 * f64::from(f32::EPSILON) * size * wanted / row.w.abs())
@@ -134,9 +144,15 @@ fn oblique_near_planes_give_the_depths_of_the_inverse_projection() {
                 }
             };
             let off = (f64::from(found) - wanted).abs();
-            assert!(off <= allowed, "{sample:?}: {found}, {wanted}: off {off}, allowed {allowed}: {view:?}");
+            assert!(
+                off <= allowed,
+                "{sample:?}: {found}, {wanted}: off {off}, allowed {allowed}: {view:?}"
+            );
             assert!(found >= view.nearest_rebuilt_m(), "{found} {view:?}");
-            assert!(view.farthest_rebuilt_m().is_none_or(|end_m| found <= end_m), "{found} {view:?}");
+            assert!(
+                view.farthest_rebuilt_m().is_none_or(|end_m| found <= end_m),
+                "{found} {view:?}"
+            );
             checked += 1;
             let is_off = (f64::from(plain) - wanted).abs() > 10.0 * allowed;
             plain_is_off += usize::from(is_off || !plain.is_finite());

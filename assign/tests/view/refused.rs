@@ -31,7 +31,12 @@ fn what_is_no_projection_is_refused() {
         (with(perspective(), 3, 1, -0.2), "view_to_clip[3][1]", "-0.2", "0: w depends on z"),
         (with(perspective(), 3, 3, 1.0), "view_to_clip[3][3]", "1", "0 in a perspective"),
         (with(orthographic(), 3, 3, 0.0), "view_to_clip[3][3]", "0", "above 0 in an orthographic"),
-        (with(orthographic(), 3, 3, -1.0), "view_to_clip[3][3]", "-1", "above 0 in an orthographic"),
+        (
+            with(orthographic(), 3, 3, -1.0),
+            "view_to_clip[3][3]",
+            "-1",
+            "above 0 in an orthographic",
+        ),
         (with(perspective(), 0, 0, 0.0), "view_to_clip[0][0]", "0", "other than 0"),
         (with(perspective(), 1, 1, 0.0), "view_to_clip[1][1]", "0", "other than 0"),
         (Mat4::ZERO, "view_to_clip[3][3]", "0", "above 0"),
@@ -42,7 +47,12 @@ fn what_is_no_projection_is_refused() {
         (with(perspective(), 2, 3, 0.0), "view_to_clip[2][3]", "0", "other than 0"),
         (with(orthographic(), 2, 2, 0.0), "view_to_clip[2][2]", "0", "other than 0"),
         // A near plane behind the eye.
-        (with(perspective(), 2, 3, 0.1), "view_to_clip[2][3]", "hides the whole window", "in front"),
+        (
+            with(perspective(), 2, 3, 0.1),
+            "view_to_clip[2][3]",
+            "hides the whole window",
+            "in front",
+        ),
         (with(orthographic(), 2, 3, 0.5), "view_to_clip[2][3]", "near plane at -25", "in front"),
         (with(perspective(), 1, 2, f32::NAN), "view_to_clip[1][2]", "NaN", "finite"),
         (with(perspective(), 2, 2, f32::INFINITY), "view_to_clip[2][2]", "inf", "finite"),
@@ -77,7 +87,10 @@ fn transforms_that_change_lengths_are_refused() {
         let error = View::from_matrices(bad, perspective(), PORT).expect_err(field);
         assert_eq!(error.field, field, "{error}");
         assert!(error.value.contains(value) && error.accepted.contains(accepted), "{error}");
-        assert_eq!(View::from_gl_matrices(bad, perspective(), PORT).map_err(|e| e.field), Err(field));
+        assert_eq!(
+            View::from_gl_matrices(bad, perspective(), PORT).map_err(|e| e.field),
+            Err(field)
+        );
     }
     let mirror = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
     assert!(View::from_matrices(camera() * mirror, perspective(), PORT).is_ok());

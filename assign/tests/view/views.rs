@@ -26,15 +26,15 @@ fn window(offset: f32, size: f32) -> impl Strategy<Value = (Vec2, Vec2)> {
 /// Window, near and far plane.
 fn projection() -> impl Strategy<Value = (Projection, f32, Option<f32>)> {
     let far = || prop_oneof![Just(None), (1.5_f32..1e4).prop_map(Some)];
-    let perspective = (window(1.5, 3.0), 0.005_f32..1.0, far()).prop_map(|((min, max), near, far)| {
-        (Projection::Perspective { min, max }, near, far.map(|share| share * near))
-    });
+    let perspective =
+        (window(1.5, 3.0), 0.005_f32..1.0, far()).prop_map(|((min, max), near, far)| {
+            (Projection::Perspective { min, max }, near, far.map(|share| share * near))
+        });
     let near = prop_oneof![Just(0.0_f32), 0.01_f32..9.0];
-    let orthographic = (window(20.0, 40.0), near, 1.0_f32..300.0).prop_map(
-        |((min, max), near, depth)| {
+    let orthographic =
+        (window(20.0, 40.0), near, 1.0_f32..300.0).prop_map(|((min, max), near, depth)| {
             (Projection::Orthographic { min, max }, near, Some(near + depth))
-        },
-    );
+        });
     prop_oneof![2 => perspective, 1 => orthographic]
 }
 
@@ -69,7 +69,8 @@ pub(crate) fn oblique() -> impl Strategy<Value = (View, glam::Vec4)> {
             let (_, max) = (at, window_of(&view)[1]);
             let window = at + (max - at) * DVec2::new(u.into(), v.into());
             let depth_m = view.far_m.unwrap_or(30.0 * view.near_m);
-            let depth_m = view.near_m + share * (depth_m.min(100.0 * view.near_m.max(0.1)) - view.near_m);
+            let depth_m =
+                view.near_m + share * (depth_m.min(100.0 * view.near_m.max(0.1)) - view.near_m);
             let point = point_view(&view, window, depth_m.into());
             let to_world = view.world_to_view.inverse();
             let point = to_world.transform_point3(point.as_vec3());
