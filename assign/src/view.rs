@@ -2,8 +2,12 @@
 //!
 //! View space is right-handed: +X right, +Y up, and the camera looks along -Z. *View depth* is
 //! `-z`, positive in front of the camera. Clip depth runs from 0 to 1, reversed or not.
+//!
+//! [`View::from_matrices`] makes a view from the matrices of another renderer, whatever its conventions are.
 
+mod depth_row;
 mod extent;
+mod matrices;
 mod uniform;
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -31,6 +35,16 @@ pub enum Projection {
         /// Upper right corner `(right, top)`, metres.
         max: Vec2,
     },
+}
+
+impl Projection {
+    /// Whether it is perspective, and the window's corners.
+    fn window(self) -> (bool, Vec2, Vec2) {
+        match self {
+            Self::Perspective { min, max } => (true, min, max),
+            Self::Orthographic { min, max } => (false, min, max),
+        }
+    }
 }
 
 /// How clip depth maps to view depth.
@@ -69,6 +83,13 @@ pub struct View {
     pub far_m: Option<f32>,
     /// Direction of clip depth.
     pub depth: DepthMapping,
+    /// The row of [`View::view_to_clip`] that gives clip z, if it is not the one that `near_m`, `far_m` and `depth`
+    /// give: that of an oblique near plane ([`View::with_near_plane`]), or the row of a given matrix bit for bit
+    /// ([`View::from_matrices`]).
+    ///
+    /// `near_m` and `far_m` must then be the view depths of the nearest and the farthest point that the row shows
+    /// in the window without jitter. To change them or `depth`, set this field to `None`.
+    pub depth_row: Option<Vec4>,
     /// The part of the target in which the image lies.
     pub viewport: Viewport,
     /// Shift of the image in pixels, +X right and +Y down, as temporal anti-aliasing uses it.
@@ -115,6 +136,7 @@ impl View {
             near_m,
             far_m: None,
             depth: DepthMapping::Reversed,
+            depth_row: None,
             viewport: Viewport { x: 0, y: 0, width: size[0], height: size[1] },
             jitter: Vec2::ZERO,
         }
@@ -164,6 +186,7 @@ impl View {
         if !self.jitter.is_finite() {
             return fail("jitter", self.jitter.to_string(), "finite");
         }
+        self.check_depth_row()?;
         if !self.view_to_clip().is_finite() {
             return fail("far", format!("{:?}", self.far_m), "small enough for f32, or infinite");
         }
@@ -184,10 +207,7 @@ impl View {
 
     /// Whether the view is perspective, and the window's corners with jitter applied.
     fn window(&self) -> (bool, Vec2, Vec2) {
-        let (perspective, min, max) = match self.projection {
-            Projection::Perspective { min, max } => (true, min, max),
-            Projection::Orthographic { min, max } => (false, min, max),
-        };
+        let (perspective, min, max) = self.projection.window();
         let size = Vec2::new(self.viewport.width.max(1) as f32, self.viewport.height.max(1) as f32);
         // To move the image right, the window moves left. Image y points down.
         let shift = Vec2::new(-self.jitter.x, self.jitter.y) * (max - min) / size;
@@ -207,6 +227,7 @@ impl View {
     }
 
     /// View to clip space, with jitter. [`View::depth`] sets the direction of clip depth.
+    /// [`View::depth_row`] takes the place of the third row.
     pub fn view_to_clip(&self) -> Mat4 {
         let (perspective, min, max) = self.window();
         let near = self.near_m;
@@ -226,21 +247,22 @@ impl View {
                 ((at_near - at_far) / (far - near), (at_near * far - at_far * near) / (far - near))
             }
         };
+        let row = self.depth_row.unwrap_or(Vec4::new(0.0, 0.0, a, b));
         let scale = 2.0 / (max - min);
         let offset = (max + min) / (max - min);
         if perspective {
             Mat4::from_cols(
-                Vec4::new(scale.x, 0.0, 0.0, 0.0),
-                Vec4::new(0.0, scale.y, 0.0, 0.0),
-                Vec4::new(offset.x, offset.y, a, -1.0),
-                Vec4::new(0.0, 0.0, b, 0.0),
+                Vec4::new(scale.x, 0.0, row.x, 0.0),
+                Vec4::new(0.0, scale.y, row.y, 0.0),
+                Vec4::new(offset.x, offset.y, row.z, -1.0),
+                Vec4::new(0.0, 0.0, row.w, 0.0),
             )
         } else {
             Mat4::from_cols(
-                Vec4::new(scale.x, 0.0, 0.0, 0.0),
-                Vec4::new(0.0, scale.y, 0.0, 0.0),
-                Vec4::new(0.0, 0.0, a, 0.0),
-                Vec4::new(-offset.x, -offset.y, b, 1.0),
+                Vec4::new(scale.x, 0.0, row.x, 0.0),
+                Vec4::new(0.0, scale.y, row.y, 0.0),
+                Vec4::new(0.0, 0.0, row.z, 0.0),
+                Vec4::new(-offset.x, -offset.y, row.w, 1.0),
             )
         }
     }

@@ -38,7 +38,8 @@ fn check_element(name: &str, rust: &StructLayout) {
 fn view_uniform() {
     let rust = struct_layout!(ViewUniform: world_to_view, view_to_world, view_to_clip, ray_scale,
         ray_offset, viewport_origin, viewport_size, near_m, far_m, perspective, position_error,
-        depth_clear, seed);
+        depth_clear, seed, depth_tilt);
+    assert_eq!(size_of::<ViewUniform>(), 272, "as its documentation says");
     assert_eq!(kernel().layout_of("View"), rust, "WESL, then Rust");
 }
 

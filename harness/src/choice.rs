@@ -1,8 +1,8 @@
 //! A strategy that a command line asks for, ready to be made.
 
 use assign::{
-    AssignError, Fewer, FrustumTests, Gpu, Half, Keep, LightSource, Reuse, Stochastic, Touched,
-    Unordered,
+    AssignError, Fewer, FrustumTests, Gpu, Half, Keep, LightSource, PlainDepth, Reuse, Stochastic,
+    Touched, Unordered,
 };
 use assign_clustered::SpecularCut;
 use shading::Mode;
@@ -63,6 +63,9 @@ impl Choice {
         let Method::Lists { mut strategy, early_exit, .. } = method else { return Ok(method) };
         if options.is_half {
             strategy = Box::new(Half::new(gpu, strategy)?);
+        }
+        if options.is_plain_depth {
+            strategy = Box::new(PlainDepth::new(strategy));
         }
         if let Some(threshold) = options.stochastic {
             strategy = Box::new(Stochastic::new(gpu, strategy, threshold)?);

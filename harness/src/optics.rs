@@ -108,6 +108,11 @@ impl Optics {
     }
 
     fn check(&self) -> Result<(), CliError> {
+        if self.framing.clip_plane.is_some() && self.near_from == PlaneSource::Option {
+            let accepted =
+                "left out: the near plane of this scene's camera is oblique, and lies on a mirror";
+            return Err(CliError::out_of_range("--near", &self.near_m.to_string(), accepted));
+        }
         match self.far {
             Far::Infinite(_) if matches!(self.lens, Some(Lens::Orthographic { .. })) => {
                 let accepted = "a number of metres, because the file's camera is orthographic";
@@ -172,7 +177,8 @@ impl Optics {
 
     /// A view around the axis, moved, mirrored and jittered as the camera's framing says.
     fn framed(&self, mut view: View) -> View {
-        let Framing { shift, jitter_px, is_mirrored, before_px: [x, y], depth, .. } = self.framing;
+        let Framing { shift, jitter_px, is_mirrored, before_px: [x, y], depth, clip_plane, .. } =
+            self.framing;
         let window = |min: Vec2, max: Vec2| {
             let shift = shift * (max - min);
             let (mut min, mut max) = (min + shift, max + shift);
@@ -188,7 +194,7 @@ impl Optics {
         }
         (view.viewport.x, view.viewport.y) = (x, y);
         (view.jitter, view.depth) = (jitter_px, depth);
-        view
+        clip_plane.map_or(view, |plane| view.with_near_plane(plane))
     }
 
     /// A view whose viewport covers the whole target of one of its views, also what lies to the right of the image
@@ -266,9 +272,16 @@ impl Optics {
         }
     }
 
-    /// The near plane, metres.
+    /// The near plane, metres. In a view with a clip plane, this plane takes its place.
     pub fn near_m(&self) -> f32 {
         self.near_m
+    }
+
+    /// Moves the near plane of a view to that of [`fit_near`](Self::fit_near). A clip plane stays where it is.
+    pub fn place_near(&self, view: &mut View) {
+        if self.framing.clip_plane.is_none() {
+            view.near_m = self.near_m;
+        }
     }
 }
 

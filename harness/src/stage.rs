@@ -244,8 +244,8 @@ impl Stage {
             (0..count).map(|frame| self.optics.view(&self.scene, pose(frame), self.size)).collect();
         views.push(self.view);
         self.optics.fit_near(&self.scene, &views);
-        self.view.near_m = self.optics.near_m();
-        views.iter_mut().for_each(|view| view.near_m = self.view.near_m);
+        self.optics.place_near(&mut self.view);
+        views.iter_mut().for_each(|view| self.optics.place_near(view));
         self.notes = self.optics.notes(&self.scene, &views);
         self.note_vpls();
     }

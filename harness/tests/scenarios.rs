@@ -54,6 +54,8 @@ fn unusual_views_are_exact_and_show_what_they_promise() {
         ("split-screen", methods),
         ("mirrored-view", methods),
         ("mirrored-view", drawn),
+        ("oblique-near-plane", methods),
+        ("oblique-near-plane", drawn),
         ("infinite-far", methods),
         ("orthographic-near-0", methods),
         ("standard-depth", methods),
@@ -78,6 +80,27 @@ fn unusual_views_are_exact_and_show_what_they_promise() {
         difference(whole, &flipped(mirrored))
     );
     assert!(difference(whole, mirrored) > 0.1, "{}", difference(whole, mirrored));
+}
+
+/// Bounds from the depths of a plain near plane lack the lights of a reflection.
+#[test]
+fn the_formula_of_plain_near_planes_fails_in_a_reflection() {
+    let mut bench = Bench::open(None).expect("an adapter");
+    let both = "--strategies None,T-E/8x8,T-E/8x8/plain-depth";
+    for (name, fails) in [("oblique-near-plane", true), ("mirrored-view", false)] {
+        let (results, _) = run(&mut bench, name, both);
+        let [_, sound, flawed] = results.records.as_slice() else { panic!("three records") };
+        assert!(sound.is_exact(), "{name}: {:?} {:?}", sound.lists, sound.image);
+        assert!(flawed.is_lossy, "{name}");
+        let missed = flawed.lists.missed_pairs.expect("checked");
+        assert_eq!(missed > 1_000, fails, "{name}: {missed} missed");
+        assert_eq!(
+            flawed.image.differing_channels > Some(1_000),
+            fails,
+            "{name}: {:?}",
+            flawed.image
+        );
+    }
 }
 
 /// Two cameras in turn, and cuts: the same strategy serves each frame of the path.

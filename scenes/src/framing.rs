@@ -1,7 +1,7 @@
 //! Where a camera's image lies: in its window, in the render target, and in clip depth.
 
 use assign::DepthMapping;
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 /// How a camera's image differs from the plain one: a window around the viewing axis, drawn into the whole
 /// target, with reversed depth. glTF cameras are plain. Stability scenarios are not.
@@ -25,6 +25,9 @@ pub struct Framing {
     pub is_endless: bool,
     /// Direction of clip depth.
     pub depth: DepthMapping,
+    /// An oblique near plane, world space: only points `p` with `dot(plane.xyz, p) + plane.w >= 0` are drawn. The eye
+    /// lies on its other side, as that of a reflection lies behind the mirror.
+    pub clip_plane: Option<Vec4>,
 }
 
 impl Framing {
@@ -38,6 +41,7 @@ impl Framing {
         less_px: [0; 2],
         is_endless: false,
         depth: DepthMapping::Reversed,
+        clip_plane: None,
     };
 }
 

@@ -199,6 +199,12 @@ impl Scene {
                 }
             }
         }
+        if self.cameras.iter().any(|camera| camera.framing.clip_plane.is_some()) {
+            feed.int(CLIP_PLANES);
+            for camera in &self.cameras {
+                feed.floats(&camera.framing.clip_plane.unwrap_or_default().to_array());
+            }
+        }
     }
 
     fn hash_cameras(&self, feed: &mut Feed) {
@@ -221,6 +227,7 @@ const SUNS: u64 = 0x7375_6e73;
 const LIGHT_ANIMATION: u64 = 0x616e_696d_6174_6564;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
 const FRAMINGS: u64 = 0x6672_616d_696e_6773;
+const CLIP_PLANES: u64 = 0x0063_6c69_7070_6564;
 const TRANSPARENT: u64 = 0x0067_6c61_7373;
 
 #[cfg(test)]

@@ -308,6 +308,9 @@ impl Scene {
             camera.pose = camera.pose.scaled(factor);
             camera.near_m *= factor;
             camera.far_m = camera.far_m.map(|far| far * factor);
+            if let Some(plane) = &mut camera.framing.clip_plane {
+                plane.w *= factor;
+            }
             if let Lens::Orthographic { half_width, half_height } = &mut camera.lens {
                 *half_width *= factor;
                 *half_height *= factor;

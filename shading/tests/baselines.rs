@@ -52,6 +52,7 @@ fn views() -> Vec<(&'static str, View)> {
         ("orthographic", orthographic),
         ("standard", standard),
         ("viewport with an offset", offset),
+        ("oblique", common::oblique([96, 64])),
     ]
 }
 

@@ -190,6 +190,7 @@ fn clusters_show_layers_as_no_culling_does_and_a_blind_strategy_is_found() {
         ("no pre-pass, standard depth", standard, Mode::ForwardNoPrepass),
         ("viewport with an offset", offset, Mode::DeferredIds),
         ("orthographic", orthographic, Mode::Deferred),
+        ("oblique", common::oblique([64, 36]), Mode::Deferred),
     ] {
         let lights = lights(&gpu, name == "deferred");
         let mut renderer = renderer(&gpu, &view, &everything_shown());

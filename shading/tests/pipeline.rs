@@ -73,11 +73,15 @@ fn a_pre_pass_and_ids_in_the_g_buffer_change_no_bit() {
     let mut standard = common::view([96, 64]);
     standard.depth = assign::DepthMapping::Standard;
     standard.far_m = Some(100.0);
+    let oblique = common::oblique([96, 64]);
     let mask =
         View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
-    for (name, view) in
-        [("reversed", common::view([96, 64])), ("standard", standard), ("mask", mask)]
-    {
+    for (name, view) in [
+        ("reversed", common::view([96, 64])),
+        ("standard", standard),
+        ("mask", mask),
+        ("oblique", oblique),
+    ] {
         for pair in [[Mode::Forward, Mode::ForwardNoPrepass], [Mode::Deferred, Mode::DeferredIds]] {
             let [(reference, samples), (image, _)] =
                 pair.map(|mode| draw(&gpu, &view, &lights, mode));
@@ -113,6 +117,7 @@ fn positions_lie_on_the_surfaces() {
         ("orthographic", orthographic),
         ("standard, jittered", standard),
         ("viewport with an offset", offset),
+        ("oblique", common::oblique([96, 64])),
     ] {
         let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
         assert!(samples.positions.len() > 1_000, "{name}: {}", samples.positions.len());

@@ -104,6 +104,18 @@ pub const CASES: &[Case] = &[
     case("mirrored", "the flipped window of a planar mirror", |r| {
         still(r, &views::mirrored(), 300, default_mix)
     }),
+    case("oblique-near-plane", "a mirror's near plane across the room", |r| {
+        still(r, &views::oblique(), 300, default_mix)
+    }),
+    case("oblique-grazing", "a lake's near plane, which hides the lower half, depth not reversed", |r| {
+        still(r, &views::grazing(), 300, default_mix)
+    }),
+    case("oblique-orthographic", "an oblique near plane of parallel rays", |r| {
+        still(r, &views::oblique_orthographic(), 300, default_mix)
+    }),
+    case("own-matrices", "matrices of a left-handed engine with OpenGL's depth", |r| {
+        still(r, &views::own_matrices(), 300, default_mix)
+    }),
     case("jitter", "sub-pixel jitter", |r| still(r, &views::jittered(), 300, default_mix)),
     case("viewport-offset", "a viewport inside a larger target", offset),
     case("odd-size", "83 x 57 pixels: no multiple of any tile", |r| {

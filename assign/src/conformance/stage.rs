@@ -1,6 +1,6 @@
 //! A case's stage: a view, surfaces traced on the CPU, and view samples.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Mat3, Vec3};
+use glam::{DMat4, DVec2, DVec3, Mat3, Vec3};
 
 use crate::{DepthMapping, ModelBox, Projection, View};
 
@@ -222,14 +222,19 @@ impl Stage {
         self.view_to_world.transform_point3(point_view)
     }
 
-    fn ray(&self, pixel: [u32; 2]) -> Ray {
+    /// The place of a pixel's middle in the window.
+    fn window(&self, pixel: [u32; 2]) -> DVec2 {
         let uniform = self.view.uniform();
         let pair = |v: [f32; 2]| DVec2::from_array(v.map(f64::from));
         let uv = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5
             - pair(uniform.viewport_origin))
             / pair(uniform.viewport_size);
         let ndc = DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
-        let window = pair(uniform.ray_scale) * ndc + pair(uniform.ray_offset);
+        pair(uniform.ray_scale) * ndc + pair(uniform.ray_offset)
+    }
+
+    fn ray(&self, pixel: [u32; 2]) -> Ray {
+        let window = self.window(pixel);
         match self.view.projection {
             Projection::Perspective { .. } => {
                 Ray { origin: DVec3::ZERO, per_metre: window.extend(-1.0) }
@@ -240,14 +245,16 @@ impl Stage {
         }
     }
 
-    fn depth_clip(&self, depth_view: f64) -> f32 {
-        let clip = self.view_to_clip * DVec4::new(0.0, 0.0, -depth_view, 1.0);
+    fn depth_clip(&self, ray: &Ray, depth_view: f64) -> f32 {
+        let clip = self.view_to_clip * ray.at(depth_view).extend(1.0);
         ((clip.z / clip.w) as f32).clamp(0.0, 1.0)
     }
 
     fn trace(&mut self, pixel: [u32; 2], solids: &[Solid]) {
         let ray = self.ray(pixel);
-        let (near, far) = self.depth_range();
+        let Some((near, far)) = self.view.shown_m(self.window(pixel)) else {
+            return;
+        };
         let nearest = (0..)
             .zip(solids)
             .filter_map(|(model_ix, solid)| Some((model_ix, solid.hit(&ray)?)))
@@ -256,7 +263,7 @@ impl Stage {
         let Some((model_ix, (depth, normal))) = nearest else {
             return;
         };
-        let depth_clip = self.depth_clip(depth);
+        let depth_clip = self.depth_clip(&ray, depth);
         // A renderer treats the cleared depth as background.
         if depth_clip == self.view.depth_clear() {
             return;
@@ -268,41 +275,49 @@ impl Stage {
             pixel,
             depth_clip,
             model_ix,
-            point: self.rebuilt(&ray, depth_clip),
+            point: self.rebuilt(pixel, depth_clip),
             normal_world: normal,
         });
     }
 
     /// The world-space point that shading rebuilds from a clip depth, in shading's f32. With a near
     /// plane of millimetres and depth not reversed, it is far from the point that was drawn.
-    fn rebuilt(&self, ray: &Ray, depth_clip: f32) -> DVec3 {
+    fn rebuilt(&self, pixel: [u32; 2], depth_clip: f32) -> DVec3 {
         let [.., [_, _, m22, m23], [_, _, m32, m33]] = self.view.view_to_clip().to_cols_array_2d();
-        let depth_view = (m32 - depth_clip * m33) / (m22 - depth_clip * m23);
-        self.to_world(ray.at(f64::from(depth_view)))
-    }
-
-    fn depth_range(&self) -> (f64, f64) {
-        let far = self.view.far_m.map_or(f64::INFINITY, f64::from);
-        (f64::from(self.view.near_m), far)
+        let [x, y] = pixel.map(|at| at as f32 + 0.5);
+        let [right, down, at_origin] = self.view.uniform().depth_tilt;
+        let tilt = right.mul_add(x, down.mul_add(y, at_origin));
+        let over = m32 - depth_clip * m33 + m33 * tilt;
+        let under = m22 - depth_clip * m23 + m23 * tilt;
+        self.to_world(self.ray(pixel).at(f64::from(over / under)))
     }
 
     /// Samples points at random depths, every eighth on the near or the far plane.
     fn sample_in_the_open(&mut self, count: usize) {
         let mut rng = Rng::new(u64::from(self.target[0]));
-        let (near, far) = self.depth_range();
-        let scale = self.deepest_surface().max(4.0 * near).max(1.0);
-        let far = far.min(4.0 * scale);
+        let nearest = f64::from(self.view.near_m);
+        let scale = self.deepest_surface().max(4.0 * nearest).max(1.0);
         for i in 0..count {
             let port = self.view.viewport;
             let x = port.x + rng.below(port.width as usize) as u32;
             let y = port.y + rng.below(port.height as usize) as u32;
+            // An oblique near plane hides some rays.
+            let Some((near, far)) = self.view.shown_m(self.window([x, y])) else {
+                continue;
+            };
+            let is_endless = far.is_infinite();
+            let far = far.min(4.0 * scale).max(near);
             let at_far = self.view.depth_clear();
             let depth_clip = match i % 16 {
                 0 => 1.0 - at_far,
+                8 if is_endless => continue,
                 8 => at_far,
-                _ => self.depth_clip(rng.log_range(near.max(1e-3 * far), far)),
+                _ => {
+                    let depth = rng.log_range(near.max(1e-3 * far), far);
+                    self.depth_clip(&self.ray([x, y]), depth)
+                }
             };
-            let point = self.rebuilt(&self.ray([x, y]), depth_clip);
+            let point = self.rebuilt([x, y], depth_clip);
             // No depth buffer can distinguish a point so far away from infinity.
             if !point.is_finite() {
                 continue;

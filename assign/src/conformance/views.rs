@@ -1,6 +1,6 @@
 //! Cameras of the cases.
 
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::{DepthMapping, Projection, View, Viewport};
 
@@ -57,6 +57,39 @@ pub(super) fn mirrored() -> View {
         },
         ..sized(SIZE)
     }
+}
+
+/// The plane of a `view` that is `plane_view` in its space.
+fn in_front_of(view: View, plane_view: Vec4) -> View {
+    view.with_near_plane(view.world_to_view.transpose() * plane_view)
+}
+
+/// A mirror that cuts through the room, seen in a flipped window with jitter inside a larger target.
+pub(super) fn oblique() -> View {
+    let viewport = Viewport { x: 9, y: 5, ..mirrored().viewport };
+    let view = View { jitter: Vec2::new(0.4, -0.3), viewport, ..mirrored() };
+    in_front_of(view, Vec4::new(0.5, -0.35, -0.8, -2.6))
+}
+
+/// A plane almost along the axis: rays in the lower half of the window never come before it.
+pub(super) fn grazing() -> View {
+    in_front_of(standard(0.1, Some(40.0)), Vec4::new(0.05, 1.0, -0.02, -0.3))
+}
+
+/// Parallel rays that meet the plane at view depths from 0.9 to 5 m.
+pub(super) fn oblique_orthographic() -> View {
+    in_front_of(orthographic(DepthMapping::Reversed), Vec4::new(0.3, 0.3, -1.0, -3.0))
+}
+
+/// Looks along +Z in a left-handed space, with OpenGL's clip depth.
+pub(super) fn own_matrices() -> View {
+    let flip = Mat4::from_scale(Vec3::new(1.0, 1.0, -1.0));
+    let plain = standard(0.1, Some(40.0));
+    let mut rows = (plain.view_to_clip() * flip).transpose();
+    rows.z_axis = 2.0 * rows.z_axis - rows.w_axis;
+    let made = View::from_gl_matrices(flip * plain.world_to_view, rows.transpose(), plain.viewport);
+    // The case fails with a view that is refused.
+    made.unwrap_or(View { near_m: f32::NAN, ..plain })
 }
 
 /// Half a pixel to the left and a third down.

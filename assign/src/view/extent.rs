@@ -10,6 +10,10 @@ impl View {
     /// plane well outwards: from 1,000 m to 1,049 m with a near plane at 1 mm.
     pub fn farthest_rebuilt_m(&self) -> Option<f32> {
         let far_m = self.far_m?;
+        if self.is_tilted() {
+            let (_, farthest_m) = self.rebuilt_span_m();
+            return farthest_m.map(|rebuilt| far_m.max(rebuilt));
+        }
         // WGSL divides to 2.5 units in the last place.
         let rebuilt = self.rebuilt_m(self.depth_clear()) * (1.0 + 4.0 * f32::EPSILON);
         (rebuilt.is_finite() && rebuilt > 0.0).then_some(far_m.max(rebuilt))
@@ -18,6 +22,10 @@ impl View {
     /// The least view depth that shading can rebuild from a clip depth, metres. It lies in front of
     /// the near plane if a distant far plane leaves an orthographic depth few bits.
     pub fn nearest_rebuilt_m(&self) -> f32 {
+        if self.is_tilted() {
+            let (nearest_m, _) = self.rebuilt_span_m();
+            return self.near_m.min(nearest_m);
+        }
         let rebuilt = self.rebuilt_m(1.0 - self.depth_clear());
         let slack = 4.0 * f32::EPSILON * rebuilt.abs();
         if rebuilt.is_finite() { self.near_m.min(rebuilt - slack) } else { 0.0 }
@@ -52,7 +60,7 @@ impl View {
         }
     }
 
-    /// View depth of a clip depth, computed as in `view.wesl`, metres.
+    /// View depth of a clip depth, computed as in `view.wesl`, metres. The near plane must not be oblique.
     fn rebuilt_m(&self, depth_clip: f32) -> f32 {
         let clip = self.view_to_clip();
         (clip.w_axis.z - depth_clip * clip.w_axis.w) / (clip.z_axis.z - depth_clip * clip.z_axis.w)

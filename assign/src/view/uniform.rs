@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::View;
 
-/// A [`View`] as shaders read it: `view.wesl`, `struct View`. 256 bytes.
+/// A [`View`] as shaders read it: `view.wesl`, `struct View`. 272 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ViewUniform {
@@ -37,8 +37,13 @@ pub struct ViewUniform {
     pub depth_clear: f32,
     /// [`Frame::seed`](crate::Frame::seed).
     pub seed: u32,
-    /// Pads to 256 bytes.
+    /// Aligns `depth_tilt` to 16 bytes.
     pub padding: [f32; 2],
+    /// How clip depth depends on the pixel: `x` per pixel to the right, `y` per pixel down, and `z` at pixel (0, 0) of
+    /// the target. 0 unless the near plane is oblique.
+    pub depth_tilt: [f32; 3],
+    /// Pads to 272 bytes.
+    pub padding_end: f32,
 }
 
 impl View {
@@ -60,6 +65,8 @@ impl View {
             depth_clear: self.depth_clear(),
             seed: 0,
             padding: [0.0; 2],
+            depth_tilt: self.depth_tilt(),
+            padding_end: 0.0,
         }
     }
 }

@@ -73,6 +73,7 @@ pub(crate) fn view() -> impl Strategy<Value = View> {
                 near_m,
                 far_m,
                 depth: if flip { DepthMapping::Reversed } else { DepthMapping::Standard },
+                depth_row: None,
                 viewport: Viewport { x, y, width, height },
                 jitter: if flip { jitter.truncate() } else { Vec2::ZERO },
             };

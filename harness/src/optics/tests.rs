@@ -197,6 +197,7 @@ fn a_framing_reaches_the_view() {
         less_px: [9, 2],
         is_endless: true,
         depth: assign::DepthMapping::Standard,
+        clip_plane: None,
     };
     let (framed, target, planes) = view(&scene, "");
     let Projection::Perspective { min, max } = framed.projection else { panic!("perspective") };

@@ -222,7 +222,7 @@ fn segment_of(rng: &mut impl Rng, axis: Axis) -> Option<&'static str> {
         Axis::Exit => &["no-exit"],
         Axis::Specular | Axis::Fewer | Axis::Stochastic | Axis::Reuse | Axis::Cap => return None,
         // These fail on purpose.
-        Axis::Rectangle | Axis::Half | Axis::Order => return None,
+        Axis::Rectangle | Axis::Half | Axis::PlainDepth | Axis::Order => return None,
     };
     Some(values[rng.random_range(0..values.len())])
 }

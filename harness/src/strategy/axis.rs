@@ -33,6 +33,8 @@ const NO_EXIT: &str = "no-exit";
 const RECTANGLE: &str = "rect";
 /// The segment that culls by positions and ranges in half precision. A flaw.
 const HALF: &str = "half";
+/// The segment that culls by view depths which ignore an oblique near plane. A flaw.
+const PLAIN_DEPTH: &str = "plain-depth";
 /// The segment that puts lists into a random order. A flaw.
 const UNORDERED: &str = "unordered";
 
@@ -63,6 +65,8 @@ pub enum Axis {
     Rectangle,
     /// Whether lists are made for positions and ranges in half precision: `half`. A flaw.
     Half,
+    /// Whether lists are made for view depths that ignore an oblique near plane: `plain-depth`. A flaw.
+    PlainDepth,
     /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
     Fewer,
     /// The irradiance below which lights stay at random: `stochastic0.01`. Lossy.
@@ -83,7 +87,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Slices,
         Self::Scatter,
         Self::Box,
@@ -95,6 +99,7 @@ impl Axis {
         Self::Storage,
         Self::Rectangle,
         Self::Half,
+        Self::PlainDepth,
         Self::Stochastic,
         Self::Fewer,
         Self::Reuse,
@@ -107,7 +112,7 @@ impl Axis {
 
     /// Whether its segment is a flaw: a method with it fails on purpose.
     pub(super) fn is_flaw(self) -> bool {
-        matches!(self, Self::Rectangle | Self::Half | Self::Order)
+        matches!(self, Self::Rectangle | Self::Half | Self::PlainDepth | Self::Order)
     }
 
     /// What its segment may be.
@@ -155,6 +160,9 @@ impl Axis {
                 "rect, a flaw: lights must touch a rectangle on the screen that is too small"
             }
             Self::Half => "half, a flaw: lists are made for positions and ranges in half precision",
+            Self::PlainDepth => {
+                "plain-depth, a flaw: lists are made for view depths that ignore an oblique near plane"
+            }
             Self::Order => "unordered, a flaw: lists have another order in each frame",
         }
     }
@@ -170,6 +178,7 @@ impl Axis {
             NO_EXIT => Some(Self::Exit),
             RECTANGLE => Some(Self::Rectangle),
             HALF => Some(Self::Half),
+            PLAIN_DEPTH => Some(Self::PlainDepth),
             UNORDERED => Some(Self::Order),
             EVEN => Some(Self::Slices),
             RASTER => Some(Self::Scatter),
@@ -233,6 +242,7 @@ impl Axis {
             Self::Exit => options.evaluates_all = true,
             Self::Rectangle => options.is_rectangle = true,
             Self::Half => options.is_half = true,
+            Self::PlainDepth => options.is_plain_depth = true,
             Self::Order => options.is_unordered = true,
         }
         Some(())
@@ -271,6 +281,7 @@ impl Axis {
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
             Self::Rectangle => options.is_rectangle.then(|| RECTANGLE.to_owned()),
             Self::Half => options.is_half.then(|| HALF.to_owned()),
+            Self::PlainDepth => options.is_plain_depth.then(|| PLAIN_DEPTH.to_owned()),
             Self::Order => options.is_unordered.then(|| UNORDERED.to_owned()),
         }
     }
@@ -318,8 +329,11 @@ impl Axis {
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
             Self::Rectangle if options.is_rectangle => ("screen_rectangle", true.into()),
             Self::Half if options.is_half => ("half_precision", true.into()),
+            Self::PlainDepth if options.is_plain_depth => ("plain_depth", true.into()),
             Self::Order if options.is_unordered => ("random_order", true.into()),
-            Self::Exit | Self::Rectangle | Self::Half | Self::Order => return None,
+            Self::Exit | Self::Rectangle | Self::Half | Self::PlainDepth | Self::Order => {
+                return None;
+            }
         })
     }
 }

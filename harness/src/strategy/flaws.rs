@@ -70,6 +70,15 @@ const FLAWS: &[Flaw] = &[
         source: "FreeSpace 2 Open, \"Add Z-Compression shader to better use position buffer's FP16\", 2026",
     },
     Flaw {
+        name: "view depth by the formula of a plain near plane",
+        id: "T-E/32x32/plain-depth",
+        options: &[],
+        fails: "In a reflection whose near plane lies on the mirror, tiles are bounded where their samples are not, and \
+                lack the lights of what they show.",
+        source: "Unity, \"Added support for oblique matrices in light loop culling\", 2018; KlayGE, \"General depth \
+                 buffer linearization\", 2018; Lengyel 2005",
+    },
+    Flaw {
         name: "shading beyond the range that lists are made for",
         id: "T-E/32x32",
         options: &["--cut", "never"],
@@ -223,7 +232,9 @@ mod tests {
             let refused = StrategyId::parse(text).expect_err(text).to_string();
             assert!(refused.contains("contradict each other"), "{refused}");
         }
-        for text in ["G/rect", "DC-E/rect", "None/unordered", "M/half", "W/half"] {
+        for text in
+            ["G/rect", "SC-E/plain-depth", "DC-E/rect", "None/unordered", "M/half", "W/half"]
+        {
             let refused = StrategyId::parse(text).expect_err(text).to_string();
             assert!(refused.contains("is unknown"), "{refused}");
         }

@@ -180,6 +180,7 @@ impl StrategyId {
         let lossless = self.with(|options| {
             (options.cap, options.fewer, options.reuse) = (None, None, None);
             (options.is_rectangle, options.is_half, options.is_unordered) = (false, false, false);
+            options.is_plain_depth = false;
             options.stochastic = None;
             options.specular = SpecularCut::None;
         });

@@ -81,6 +81,8 @@ pub struct Options {
     pub is_rectangle: bool,
     /// Whether lists are made for positions and ranges in half precision.
     pub is_half: bool,
+    /// Whether lists are made for view depths that ignore an oblique near plane.
+    pub is_plain_depth: bool,
     /// Whether lists have a random order in each frame.
     pub is_unordered: bool,
 }

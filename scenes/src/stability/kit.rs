@@ -288,6 +288,9 @@ impl Kit {
         self.lights.iter_mut().for_each(|light| light.position += by);
         let poses = self.cuts.iter_mut().chain([&mut self.camera.pose]);
         poses.for_each(|pose| pose.eye += by);
+        if let Some(plane) = &mut self.camera.framing.clip_plane {
+            plane.w -= plane.truncate().dot(by);
+        }
     }
 
     /// The pose of a camera at `eye` that looks at `target`.

@@ -192,6 +192,9 @@ fn planes_and_framings_are_as_promised() {
     assert_ne!(camera("split-screen").framing.after_px, [0; 2]);
     assert_ne!(camera("odd-size").framing.less_px, [0; 2]);
     assert!(camera("mirrored-view").framing.is_mirrored);
+    let mirror = camera("oblique-near-plane");
+    let plane = mirror.framing.clip_plane.expect("a plane");
+    assert!(mirror.framing.is_mirrored && plane.dot(mirror.pose.eye.extend(1.0)) < -1.0);
     assert_eq!(camera("standard-depth").framing.depth, assign::DepthMapping::Standard);
     assert_eq!(camera("tile-corner-light").framing, Framing::PLAIN);
     let far = open("range-beyond-far");

@@ -25,13 +25,18 @@ impl Rays {
         }
     }
 
-    /// The ray through the middle of a pixel of the viewport: origin, unit direction, and view
-    /// depth per metre along it.
-    fn through(&self, pixel: DVec2) -> (DVec3, DVec3, f64) {
+    /// The place in the window of the middle of a pixel of the viewport.
+    fn window(&self, pixel: DVec2) -> DVec2 {
         let to_f64 = |pair: [f32; 2]| Vec2::from(pair).as_dvec2();
         let uv = (pixel + 0.5) / to_f64(self.uniform.viewport_size);
         let ndc = DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
-        let at = to_f64(self.uniform.ray_scale) * ndc + to_f64(self.uniform.ray_offset);
+        to_f64(self.uniform.ray_scale) * ndc + to_f64(self.uniform.ray_offset)
+    }
+
+    /// The ray through the middle of a pixel of the viewport: origin, unit direction, and view
+    /// depth per metre along it.
+    fn through(&self, pixel: DVec2) -> (DVec3, DVec3, f64) {
+        let at = self.window(pixel);
         let (origin, direction) = if self.is_perspective {
             (DVec3::ZERO, at.extend(-1.0))
         } else {
@@ -61,9 +66,10 @@ impl TracedScene<'_> {
     /// surface that the rasteriser draws, but without the rounding of depth and G-buffer.
     pub fn primary(&self, view: &View, pixel: [u32; 2]) -> Option<SurfaceSample> {
         let rays = Rays::new(view);
-        let (origin, direction, per_metre) = rays.through(pixel.map(f64::from).into());
-        let start_m = f64::from(view.near_m) / per_metre;
-        let end_m = view.far_m.map_or(f64::INFINITY, |far_m| f64::from(far_m) / per_metre);
+        let middle = pixel.map(f64::from).into();
+        let (origin, direction, per_metre) = rays.through(middle);
+        let (near_m, far_m) = view.shown_m(rays.window(middle))?;
+        let (start_m, end_m) = (near_m / per_metre, far_m / per_metre);
         let drawn = |hit: &Hit| self.is_drawn(hit) && self.is_solid(hit);
         let start = origin + direction * start_m;
         let hit = self.triangles.first(start, direction, end_m - start_m, drawn)?;

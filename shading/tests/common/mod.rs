@@ -144,6 +144,13 @@ pub(crate) fn view(size: [u32; 2]) -> View {
     View::look_at(Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 1.2, 0.0), 1.0, 0.1, size)
 }
 
+/// The showcase's camera with an oblique near plane that cuts through the room.
+#[allow(dead_code, reason = "some tests need no oblique view")]
+pub(crate) fn oblique(size: [u32; 2]) -> View {
+    let normal = Vec3::new(0.3, -0.2, -1.0);
+    view(size).with_near_plane(normal.extend(-normal.dot(Vec3::new(0.0, 1.2, 2.6))))
+}
+
 /// Lights in the showcase, every third one a spot, every sixth a virtual point light.
 pub(crate) fn lights(count: u32) -> Vec<Light> {
     (0..count)

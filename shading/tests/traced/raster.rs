@@ -37,7 +37,11 @@ fn truth_without_shadows_matches_the_pipeline() {
 #[test]
 fn rays_and_rasteriser_find_the_same_surfaces() {
     let gpu = common::gpu();
-    let scenes = [(scenes::atrium(1), "atrium"), (common::showcase(), "showcase")];
+    let scenes = [
+        (scenes::atrium(1), "atrium"),
+        (common::showcase(), "showcase"),
+        (common::showcase(), "oblique near plane"),
+    ];
     for (scene, name) in &scenes {
         let traced = TracedScene::new(scene);
         let size = [160, 90];
@@ -46,7 +50,8 @@ fn rays_and_rasteriser_find_the_same_surfaces() {
                 let pose = scene.path.pose(0, 1);
                 View::looking(pose.eye, pose.forward(), pose.up, 1.0, 0.05, size)
             }
-            _ => common::view(size),
+            "showcase" => common::view(size),
+            _ => common::oblique(size),
         };
         let (gbuffer, _) =
             rasterise(&gpu, scene, &view, &common::lights(1), Suns::default(), Mode::Deferred);

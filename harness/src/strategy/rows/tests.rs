@@ -82,6 +82,7 @@ fn ids_are_those_of_the_strategies() {
         "T-I/16x16/hs/bvh/rect",
         "DC-I/mask/rect/half",
         "SC-E/half/unordered",
+        "T-E/half/plain-depth",
         "W1",
     ] {
         let choice = Choice::parse(id).expect(id);

@@ -118,6 +118,7 @@ const TILES: Row = Row {
         Axis::AreaBounds,
         Axis::Storage,
         Axis::Half,
+        Axis::PlainDepth,
         Axis::Fewer,
         Axis::Stochastic,
         Axis::Order,
