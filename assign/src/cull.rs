@@ -92,6 +92,13 @@ impl Variant {
                 reason: "only groups of shape Box can know normals".into(),
             });
         }
+        if self.facing == Facing::SpecularReach && self.settings.storage != Storage::Lists {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: format!("storage {:?} with a specular reach", self.settings.storage),
+                reason: "only plain lists hold lights beyond their range".into(),
+            });
+        }
         // What the others leave out of lists, they mark in an entry's flags.
         if !matches!(self.facing, Facing::Unknown | Facing::Horizon)
             && self.settings.storage.is_mask()
@@ -100,13 +107,6 @@ impl Variant {
                 strategy: strategy.into(),
                 asked: "bit masks with a specular cut".into(),
                 reason: "a bit cannot say which terms of a light to leave out".into(),
-            });
-        }
-        if self.facing == Facing::SpecularReach && self.settings.storage != Storage::Lists {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: format!("storage {:?} with a specular reach", self.settings.storage),
-                reason: "only plain lists hold lights beyond their range".into(),
             });
         }
         Ok(())

@@ -20,7 +20,7 @@ use shading::Mode;
 
 use crate::{
     bench::Bench,
-    checks::{check_motion, served},
+    checks::{check_motion, check_reach, served},
     choice::Choice,
     cli::{CliError, ExplainArgs},
     compare::DEFAULT_PATH_FRAMES,
