@@ -1,6 +1,6 @@
 //! What tells one strategy of clusters from another.
 
-use assign::{AssignError, Bounds, CullSettings, GroupShape};
+use assign::{AssignError, Bounds, CullSettings, Facing, GroupShape, check_specular_reach};
 
 use crate::{Normals, Occupancy, Slices, SpecularCut, froxels::FroxelSize};
 
@@ -19,12 +19,16 @@ pub struct ClusterOptions {
     pub normals: Normals,
     /// Which specular light of area lights is left out; also only for SC-E.
     pub cut: SpecularCut,
+    /// Out to how many of its ranges a point or a spot is listed for its specular term, at most, on polished surfaces:
+    /// 1 to [`MAX_SPECULAR_REACH`](assign::MAX_SPECULAR_REACH). `None`: lists end at the range. Only for SC-E without
+    /// bins of normals and without a cut.
+    pub reach: Option<f32>,
     /// The settings of the culling driver.
     pub settings: CullSettings,
 }
 
 impl ClusterOptions {
-    /// Exponential slices, without normals and without a cut.
+    /// Exponential slices, without normals, without a cut, and lists that end at the lights' ranges.
     pub fn new(
         size: FroxelSize,
         bounds: Bounds,
@@ -32,7 +36,7 @@ impl ClusterOptions {
         settings: CullSettings,
     ) -> Self {
         let (slices, normals, cut) = (Slices::default(), Normals::None, SpecularCut::None);
-        Self { size, bounds, occupancy, slices, normals, cut, settings }
+        Self { size, bounds, occupancy, slices, normals, cut, reach: None, settings }
     }
 
     pub(crate) fn family(&self) -> &'static str {
@@ -53,8 +57,26 @@ impl ClusterOptions {
         }
     }
 
+    /// What the kernel must know of the surfaces of groups.
+    pub(crate) fn facing(&self) -> Facing {
+        match self.reach {
+            Some(_) => Facing::SpecularReach,
+            None => self.cut.facing(self.normals),
+        }
+    }
+
+    /// Whether the pass `bounds` reads normals.
+    pub(crate) fn reads_normals(&self) -> bool {
+        self.normals.is_some() || self.reach.is_some()
+    }
+
+    /// Whether the pass `bounds` reads base colours.
+    pub(crate) fn reads_materials(&self) -> bool {
+        self.cut.is_glossy() || self.reach.is_some()
+    }
+
     pub(crate) fn check(&self) -> Result<(), AssignError> {
-        let Self { size, bounds, occupancy, slices, normals, cut, .. } = *self;
+        let Self { size, bounds, occupancy, slices, normals, cut, reach, .. } = *self;
         size.check()?;
         occupancy.check(size, slices)?;
         slices.check(size.slices)?;
@@ -67,19 +89,32 @@ impl ClusterOptions {
                 reason: "clusters that are split by normals have tiles of one size".into(),
             });
         }
-        let is_plain = !normals.is_some() && cut == SpecularCut::None;
+        let is_of_normals = normals.is_some() || cut != SpecularCut::None;
+        if let Some(most) = reach {
+            check_specular_reach(most)?;
+            if is_of_normals {
+                return Err(AssignError::Unsupported {
+                    strategy: self.family().into(),
+                    asked: format!("a specular reach of {most} ranges"),
+                    reason: "clusters that are split by normals or leave out specular light end at the lights' ranges"
+                        .into(),
+                });
+            }
+        }
+        let is_plain = !is_of_normals && reach.is_none();
         if is_plain || (bounds, occupancy) == (Bounds::Explicit, Occupancy::Sparse) {
             return Ok(());
         }
-        let asked = match normals.is_some() {
-            true => format!("{} bins of normals", normals.bins()),
-            false => format!("the specular cut {cut:?}"),
+        let asked = match (normals, reach) {
+            (Normals::Bins(bins), _) => format!("{bins} bins of normals"),
+            (Normals::None, Some(most)) => format!("a specular reach of {most} ranges"),
+            (Normals::None, None) => format!("the specular cut {cut:?}"),
         };
         Err(AssignError::Unsupported {
             strategy: self.family().into(),
             asked,
-            reason: "only sparse clusters with explicit bounds, SC-E, can be split by normals or leave out \
-                     specular light"
+            reason: "only sparse clusters with explicit bounds, SC-E, can be split by normals, leave out \
+                     specular light or list lights beyond their range"
                 .into(),
         })
     }

@@ -20,6 +20,7 @@ pub const IMPLICIT_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", false),
     ("split_by_normals", false),
     ("glossy", false),
+    ("polished", false),
     ("cascaded", false),
 ]);
 
@@ -28,6 +29,7 @@ pub const EXPLICIT_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", true),
     ("split_by_normals", false),
     ("glossy", false),
+    ("polished", false),
     ("cascaded", false),
 ]);
 
@@ -36,6 +38,7 @@ pub const IMPLICIT_CASCADES_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", false),
     ("split_by_normals", false),
     ("glossy", false),
+    ("polished", false),
     ("cascaded", true),
 ]);
 
@@ -44,6 +47,7 @@ pub const EXPLICIT_CASCADES_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", true),
     ("split_by_normals", false),
     ("glossy", false),
+    ("polished", false),
     ("cascaded", true),
 ]);
 
@@ -53,6 +57,7 @@ pub const BINS_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", true),
     ("split_by_normals", true),
     ("glossy", false),
+    ("polished", false),
     ("cascaded", false),
 ]);
 
@@ -61,7 +66,26 @@ pub const GLOSSY_BINS_WESL: StrategyWesl<'static> = clusters(&[
     ("explicit_bounds", true),
     ("split_by_normals", true),
     ("glossy", true),
+    ("polished", false),
     ("cascaded", false),
+]);
+
+/// [`EXPLICIT_WESL`] for clusters that also know how far specular terms reach on them: `group_reach` too.
+pub const POLISHED_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("polished", true),
+    ("cascaded", false),
+]);
+
+/// [`POLISHED_WESL`] for tiles that grow towards the eye.
+pub const POLISHED_CASCADES_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("polished", true),
+    ("cascaded", true),
 ]);
 
 const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
@@ -73,13 +97,16 @@ const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'stati
     }
 }
 
-/// The WESL of clusters. Only clusters with explicit bounds have normals or gloss, and then no cascades.
+/// The WESL of clusters. Only clusters with explicit bounds have normals, gloss or a specular reach; those with normals
+/// have no cascades.
 pub(crate) fn cluster_wesl(options: &ClusterOptions) -> StrategyWesl<'static> {
     match (options.bounds, options.slices.is_cascaded()) {
         (Bounds::Implicit, false) => IMPLICIT_WESL,
         (Bounds::Implicit, true) => IMPLICIT_CASCADES_WESL,
         (Bounds::Explicit, _) if options.cut.is_glossy() => GLOSSY_BINS_WESL,
         (Bounds::Explicit, _) if options.normals.is_some() => BINS_WESL,
+        (Bounds::Explicit, false) if options.reach.is_some() => POLISHED_WESL,
+        (Bounds::Explicit, true) if options.reach.is_some() => POLISHED_CASCADES_WESL,
         (Bounds::Explicit, false) => EXPLICIT_WESL,
         (Bounds::Explicit, true) => EXPLICIT_CASCADES_WESL,
     }

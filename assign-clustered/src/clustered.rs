@@ -7,7 +7,7 @@ use assign::{
 use bytemuck::bytes_of;
 
 use crate::{
-    Normals, Occupancy,
+    Occupancy,
     cluster_options::ClusterOptions,
     cluster_wesl::cluster_wesl,
     froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform},
@@ -74,7 +74,7 @@ impl Clustered {
                     shape: options.shape(),
                     settings,
                     sparse,
-                    facing: options.cut.facing(normals),
+                    facing: options.facing(),
                     // SAFETY: the modules of clusters have loops over four cascades, and no others.
                     #[allow(unsafe_code, reason = "their loops end")]
                     module: unsafe { StrategyModule::new(cluster_wesl(&options)) },
@@ -87,13 +87,14 @@ impl Clustered {
 
 impl Assignment for Clustered {
     fn id(&self) -> String {
-        let ClusterOptions { size, slices, normals, cut, settings, .. } = self.options;
+        let ClusterOptions { size, slices, normals, cut, reach, settings, .. } = self.options;
         format!(
-            "{}/{size}{}{}{}{}",
+            "{}/{size}{}{}{}{}{}",
             self.options.family(),
             slices.segment(),
             normals.segment(),
             cut.segment(),
+            reach.map(|most| format!("/reach{most}")).unwrap_or_default(),
             settings.suffix(self.options.shape()),
         )
     }
@@ -101,15 +102,20 @@ impl Assignment for Clustered {
     fn needs(&self) -> Needs {
         Needs {
             depth: self.gather.is_some(),
-            normals: self.options.normals.is_some(),
+            normals: self.options.reads_normals(),
             hierarchy: self.culler.reads_hierarchy(),
-            materials: self.options.cut.is_glossy(),
+            materials: self.options.reads_materials(),
             ..Needs::default()
         }
     }
 
     fn updates_groups(&self) -> bool {
-        true
+        // Changed lights are looked for within their range.
+        self.options.reach.is_none()
+    }
+
+    fn specular_reach(&self) -> f32 {
+        self.options.reach.unwrap_or(1.0)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -130,17 +136,19 @@ impl Assignment for Clustered {
             let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
             let images = Images {
                 depth,
-                normals: match self.options.normals {
-                    Normals::None => None,
-                    Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
+                normals: match self.options.reads_normals() {
+                    false => None,
+                    true => Some(frame.normals.ok_or_else(|| missing("normals"))?),
                 },
-                base_color: match self.options.cut.is_glossy() {
+                base_color: match self.options.reads_materials() {
                     false => None,
                     true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
                 },
             };
             froxels.surfaces_only = 1;
-            gather.prepare(gpu, frame, images, (&froxels, [&self.froxels, &self.bins]), count)?;
+            froxels.specular_reach = self.options.reach.unwrap_or(1.0);
+            let bins = self.options.normals.is_some().then_some(&self.bins);
+            gather.prepare(gpu, frame, images, (&froxels, (&self.froxels, bins)), count)?;
             if self.options.occupancy.is_sparse() {
                 groups = Groups::Live { count, live: gather.live() };
             }

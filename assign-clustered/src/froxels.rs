@@ -105,8 +105,8 @@ pub struct FroxelsUniform {
     pub own_slices: f32,
     /// Cascades in use; 0 if all tiles have one size.
     pub cascade_count: u32,
-    /// Pads to 64 bytes.
-    pub padding: u32,
+    /// Out to how many of its ranges a light is listed for its specular term, at most.
+    pub specular_reach: f32,
     /// Of each cascade, near to far: its first cluster, its tiles along x and y, its first slice. Those not in use
     /// begin after the last cluster and the last slice.
     pub cascades: [[u32; 4]; Slices::MAX_CASCADES as usize],
@@ -168,7 +168,7 @@ impl FroxelsUniform {
             surfaces_only: 0,
             own_slices: own as f32,
             cascade_count,
-            padding: 0,
+            specular_reach: 1.0,
             cascades,
         })
     }

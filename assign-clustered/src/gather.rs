@@ -58,11 +58,13 @@ impl Gather {
         if has_marks {
             entries.push(storage_entry(1, stages, false));
         }
-        if normals.is_some() {
+        if options.reads_normals() {
             entries.push(texture_entry(2, stages, UNFILTERED));
+        }
+        if normals.is_some() {
             entries.push(uniform_entry(BINS_BINDING, stages));
         }
-        if options.cut.is_glossy() {
+        if options.reads_materials() {
             entries.push(texture_entry(3, stages, UNFILTERED));
         }
         let layout = gpu.bind_group_layout("gather", &entries);
@@ -95,13 +97,13 @@ impl Gather {
     }
 
     /// Sizes buffers for `count` groups and binds them: outside the clock. `uniforms` are those of froxels and
-    /// of bins.
+    /// of bins; only clusters that are split by normals have the latter.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
         images: Images<'_>,
-        (froxels, uniforms): (&FroxelsUniform, [&wgpu::Buffer; 2]),
+        (froxels, uniforms): (&FroxelsUniform, (&wgpu::Buffer, Option<&wgpu::Buffer>)),
         count: u32,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
@@ -119,13 +121,12 @@ impl Gather {
             ),
         };
         self.live.prepare(gpu, count)?;
-        let mut entries = vec![texture(0, images.depth), entry(FROXELS_BINDING, uniforms[0])];
+        let mut entries = vec![texture(0, images.depth), entry(FROXELS_BINDING, uniforms.0)];
         if self.words > 0 {
             entries.push(entry(1, &self.marks));
         }
-        if let Some(normals) = images.normals {
-            entries.extend([texture(2, normals), entry(BINS_BINDING, uniforms[1])]);
-        }
+        entries.extend(images.normals.map(|view| texture(2, view)));
+        entries.extend(uniforms.1.map(|bins| entry(BINS_BINDING, bins)));
         entries.extend(images.base_color.map(|view| texture(3, view)));
         self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
         let live = [self.live.buffer()];
@@ -168,6 +169,7 @@ pub fn marks_words(options: &ClusterOptions) -> u32 {
         Bounds::Implicit => 1,
         Bounds::Explicit if options.cut.is_glossy() => 15,
         Bounds::Explicit if options.normals.is_some() => 12,
+        Bounds::Explicit if options.reach.is_some() => 7,
         Bounds::Explicit => 6,
     }
 }
@@ -176,9 +178,9 @@ pub fn marks_words(options: &ClusterOptions) -> u32 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Images<'a> {
     pub(crate) depth: &'a wgpu::TextureView,
-    /// Present if the strategy was made with normals.
+    /// Present if the strategy was made with normals or with a specular reach.
     pub(crate) normals: Option<&'a wgpu::TextureView>,
-    /// Present if it was made with a specular threshold.
+    /// Present if it was made with a specular threshold or with a specular reach.
     pub(crate) base_color: Option<&'a wgpu::TextureView>,
 }
 

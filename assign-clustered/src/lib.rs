@@ -64,6 +64,21 @@
 //! - `/dif` lists a light only if its diffuse term reaches the group. Shading then draws the specular term of a
 //!   listed light out to the light's full range.
 //!
+//! # Specular reach
+//!
+//! Polished surfaces show lights far beyond the range at which diffuse light is negligible, so culling by range cuts
+//! highlights off (Watrous 2024, figure 3a). `/reach8` lists points and spots for their specular term out to up to 8
+//! ranges ([`ClusterOptions::reach`]). It is the survey's own idea, a summary of materials per cluster:
+//!
+//! - `bounds` also reads normals, roughness and base colour. From each sample it computes how far a specular term
+//!   reaches there ([`assign::specular_reach`] derives it), and keeps the greatest reach of each cluster: one number.
+//! - `cull` lists a light for both terms where its range reaches the cluster, and only for the specular term out to the
+//!   cluster's reach. Through the hierarchy, boxes grow by as much.
+//!
+//! Shading with the same reach shows the image of no culling with it, in every bit: a sample's reach depends on its own
+//! material and its angle to the eye, and its cluster's reach is no shorter. Shading without it shows the image of no
+//! culling without it, from longer lists. Area lights keep their ranges.
+//!
 //! # Cost
 //!
 //! `bounds` grows with pixels. `cull` grows with lights times clusters that get a list.
@@ -73,6 +88,7 @@
 //! | per cluster | 8 |
 //! | more per cluster, explicit bounds | 28 |
 //! | more per cluster, sparse with implicit bounds | 8, or 4 for DA-I |
+//! | more per cluster, with a specular reach | 4 |
 //! | per cluster and bin, with normals, whether it holds samples or not | 60 |
 //! | per cluster and bin, with a specular threshold | 72 |
 //! | per listed light | 4 |
@@ -122,7 +138,7 @@ mod z_bins;
 pub use cluster_options::ClusterOptions;
 pub use cluster_wesl::{
     BINS_WESL, EXPLICIT_CASCADES_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_CASCADES_WESL,
-    IMPLICIT_WESL,
+    IMPLICIT_WESL, POLISHED_CASCADES_WESL, POLISHED_WESL,
 };
 pub use clustered::Clustered;
 pub use froxels::{FroxelSize, FroxelsUniform};

@@ -10,7 +10,8 @@ use assign::{
 use assign_clustered::{
     BINS_WESL, ClusterOptions, EXPLICIT_CASCADES_WESL, EXPLICIT_WESL, FroxelsUniform,
     GLOSSY_BINS_WESL, HybridShader, IMPLICIT_CASCADES_WESL, IMPLICIT_WESL, NormalBinsUniform,
-    Normals, Occupancy, Slices, SpecularCut, gather_source, marks_words,
+    Normals, Occupancy, POLISHED_CASCADES_WESL, POLISHED_WESL, Slices, SpecularCut, gather_source,
+    marks_words,
 };
 
 /// The culling kernel of clusters, validated.
@@ -60,6 +61,8 @@ fn kernels_with_normals_or_cuts_validate() {
                 (Facing::HorizonAndGloss, GLOSSY_BINS_WESL),
                 (Facing::ReflectedCone, BINS_WESL),
                 (Facing::WhereDiffuse, EXPLICIT_WESL),
+                (Facing::SpecularReach, POLISHED_WESL),
+                (Facing::SpecularReach, POLISHED_CASCADES_WESL),
             ] {
                 let source = Culler::facing_kernel_source(settings, facing, module, kinds);
                 LinkedModule::new(
@@ -85,6 +88,9 @@ fn the_pass_bounds_validates() {
     for glossy in [false, true] {
         gather(split(glossy));
     }
+    for slices in [Slices::Exponential, Slices::Cascaded(3)] {
+        gather(ClusterOptions { slices, ..polished() });
+    }
 }
 
 fn options(bounds: Bounds, occupancy: Occupancy) -> ClusterOptions {
@@ -99,6 +105,11 @@ fn split(glossy: bool) -> ClusterOptions {
         cut,
         ..options(Bounds::Explicit, Occupancy::Sparse)
     }
+}
+
+/// SC-E with a specular reach.
+fn polished() -> ClusterOptions {
+    ClusterOptions { reach: Some(8.0), ..options(Bounds::Explicit, Occupancy::Sparse) }
 }
 
 /// The pass `bounds`, validated.
@@ -142,7 +153,7 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
 #[test]
 fn froxels_have_one_layout_in_all_shaders_and_in_rust() {
     let rust = struct_layout!(FroxelsUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only, own_slices, cascade_count, cascades);
+        near_m, far_m, exponential, surfaces_only, own_slices, cascade_count, specular_reach, cascades);
     for (what, module) in froxel_shaders() {
         assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING), rust, "{what}: WESL, then Rust");
     }
@@ -159,7 +170,8 @@ fn normal_bins_have_one_layout_in_wesl_and_rust() {
 #[test]
 fn marks_have_as_many_words_in_wesl_as_in_rust() {
     let plain = |bounds| options(bounds, Occupancy::Sparse);
-    for options in [plain(Bounds::Implicit), plain(Bounds::Explicit), split(false), split(true)] {
+    let [implicit, explicit] = [Bounds::Implicit, Bounds::Explicit].map(plain);
+    for options in [implicit, explicit, split(false), split(true), polished()] {
         let wesl = gather(options).constant("WORDS");
         assert_eq!(wesl, marks_words(&options), "{options:?}: WESL, then Rust");
     }

@@ -44,20 +44,22 @@ fn bytes_per_group_are_those_of_the_table() {
     let (dense, sparse, aware) = (Occupancy::Dense, Occupancy::Sparse, Occupancy::DepthAware);
     let bins = Normals::Bins(6);
     let cut = SpecularCut::Below(0.001);
-    for (bounds, occupancy, normals, cut, per_group) in [
-        (implicit, dense, Normals::None, SpecularCut::None, 8),
-        (implicit, sparse, Normals::None, SpecularCut::None, 8 + 8),
-        (explicit, dense, Normals::None, SpecularCut::None, 8 + 28),
-        (explicit, sparse, Normals::None, SpecularCut::None, 8 + 28),
-        (implicit, aware, Normals::None, SpecularCut::None, 8 + 4),
-        (explicit, aware, Normals::None, SpecularCut::None, 8 + 28),
-        (explicit, sparse, bins, SpecularCut::None, 60),
-        (explicit, sparse, bins, cut, 72),
+    let none = (Normals::None, SpecularCut::None, None);
+    for (bounds, occupancy, (normals, cut, reach), per_group) in [
+        (implicit, dense, none, 8),
+        (implicit, sparse, none, 8 + 8),
+        (explicit, dense, none, 8 + 28),
+        (explicit, sparse, none, 8 + 28),
+        (implicit, aware, none, 8 + 4),
+        (explicit, aware, none, 8 + 28),
+        (explicit, sparse, (bins, SpecularCut::None, None), 60),
+        (explicit, sparse, (bins, cut, None), 72),
+        (explicit, sparse, (Normals::None, SpecularCut::None, Some(8.0)), 8 + 28 + 4),
     ] {
         let size = "16x16x8".parse().unwrap();
         let settings = CullSettings::default();
         let plain = ClusterOptions::new(size, bounds, occupancy, settings);
-        let options = ClusterOptions { normals, cut, ..plain };
+        let options = ClusterOptions { normals, cut, reach, ..plain };
         let mut strategy = Clustered::with_options(&gpu, options).unwrap();
         let (few, small) = bytes(&mut strategy, 64);
         let (many, large) = bytes(&mut strategy, 256);

@@ -25,6 +25,13 @@ pub trait Assignment {
         false
     }
 
+    /// Out to how many of its ranges a light is listed for its specular term, wherever a surface is polished enough
+    /// to show it ([`specular_reach`](crate::specular_reach)). Shading may let specular terms reach as far, and no
+    /// farther.
+    fn specular_reach(&self) -> f32 {
+        1.0
+    }
+
     /// Sizes buffers and uploads parameters. No clock counts it. After an error, do not draw the
     /// frame with this strategy.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError>;

@@ -92,6 +92,13 @@ impl Variant {
                 reason: "only groups of shape Box can know normals".into(),
             });
         }
+        if self.facing == Facing::SpecularReach && self.settings.storage != Storage::Lists {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: format!("storage {:?} with a specular reach", self.settings.storage),
+                reason: "only plain lists hold lights beyond their range".into(),
+            });
+        }
         // What the others leave out of lists, they mark in an entry's flags.
         if !matches!(self.facing, Facing::Unknown | Facing::Horizon)
             && self.settings.storage.is_mask()
@@ -356,6 +363,8 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .group_bounds(variant.shape)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
+        .module("package::group_reach", include_str!("shaders/group_reach.wesl"))
+        .flag("specular_reach", variant.facing == Facing::SpecularReach)
         .flag("bounds_by_lanes", wesl.finds_bounds_by_lanes())
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
         .flag("reflected", variant.facing == Facing::ReflectedCone)

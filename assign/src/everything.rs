@@ -32,6 +32,10 @@ impl Assignment for Everything {
         Needs::default()
     }
 
+    fn specular_reach(&self) -> f32 {
+        f32::INFINITY
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         self.lists.prepare(gpu, frame.lights, 0)?;

@@ -35,6 +35,10 @@ pub enum Facing {
     ReflectedCone,
     /// Nothing. Lists omit a light's specular term where its diffuse term does not reach. Lossy.
     WhereDiffuse,
+    /// How polished the surfaces of groups that are boxes are: `group_reach(group: u32) -> f32`, the greatest
+    /// `specular_reach_bound` of a group's samples (`specular_reach.wesl`). Beyond their range, points and spots are
+    /// listed for their specular term, out to that many ranges.
+    SpecularReach,
 }
 
 /// Which groups get a list in a frame.

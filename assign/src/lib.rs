@@ -63,6 +63,7 @@ mod readback;
 mod reuse;
 mod scalar_masks;
 mod shader;
+mod specular_reach;
 mod spot_ramp;
 mod stochastic;
 mod storage;
@@ -112,6 +113,9 @@ pub use plain_depth::PlainDepth;
 pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
+pub use specular_reach::{
+    MAX_SPECULAR_REACH, check_listed_reach, check_specular_reach, lobe_peak, specular_reach,
+};
 pub use spot_ramp::SpotRamp;
 pub use stochastic::{Stochastic, check_threshold, random_of};
 pub use storage::Storage;

@@ -13,7 +13,7 @@ use crate::{
 /// to WGSL.
 ///
 /// It starts with the contract's modules: `package::view`, `package::sample`, `package::lights`,
-/// `package::volume`, `package::window`, `package::lists`, `package::look_up` and, for kernels that make
+/// `package::volume`, `package::window`, `package::specular_reach`, `package::lists`, `package::look_up` and, for kernels that make
 /// lists, `package::keys` and `package::reserve`.
 #[derive(Clone, Debug)]
 pub struct Shader<'a> {
@@ -31,6 +31,8 @@ impl<'a> Shader<'a> {
     ///   (`package::reserve`); without it, one lane per workgroup.
     /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
     /// - `no_cut`: with it, lights do not end, though lists do: every strategy that culls loses light.
+    /// - `specular_reach`: with it, specular terms reach beyond a light's range (`package::specular_reach`), and lists
+    ///   must too.
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         let empty = Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] };
@@ -43,6 +45,7 @@ impl<'a> Shader<'a> {
             .module("package::volume", include_str!("shaders/volume.wesl"))
             .module("package::stochastic", include_str!("shaders/stochastic.wesl"))
             .module("package::window", include_str!("shaders/window.wesl"))
+            .module("package::specular_reach", include_str!("shaders/specular_reach.wesl"))
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::depth_slices", include_str!("shaders/depth_slices.wesl"))
@@ -51,6 +54,7 @@ impl<'a> Shader<'a> {
             .flag("lanes_reserve", false)
             .flag("hard_cut", false)
             .flag("no_cut", false)
+            .flag("specular_reach", false)
             .light_kinds(LightKinds::default())
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use assign::{AssignError, Gpu};
+use assign::{AssignError, Gpu, check_listed_reach};
 use shading::{Cut, Mode};
 
 use crate::{
@@ -44,6 +44,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         let accepted = "windowed or hard with --unbounded: with never, no culling shows lights without a range";
         return Err(CliError::out_of_range("--cut", args.cut.name(), accepted));
     }
+    check_reach(args.specular_reach, args.cut)?;
     if let Some(checks) = args.checks.filter(|_| is_still && !args.temporal) {
         let accepted =
             "left out without --path, --motion and --temporal, because all frames are the same";
@@ -84,6 +85,15 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
         let accepted = accepted.join("; ");
         return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
+    }
+    Ok(())
+}
+
+/// Refuses specular terms that reach beyond ranges where no term ends.
+pub(crate) fn check_reach(specular_reach: Option<f64>, cut: Cut) -> Result<(), CliError> {
+    if specular_reach.is_some() && cut == Cut::Never {
+        let accepted = "windowed or hard with --specular-reach: with never, no term ends";
+        return Err(CliError::out_of_range("--cut", cut.name(), accepted));
     }
     Ok(())
 }
@@ -184,9 +194,20 @@ pub(crate) fn served(
                         ))
                         .into());
                     }
+                    if let Some(most) = stage.specular_reach {
+                        check_listed_reach(strategy.as_ref(), most)?;
+                    }
                     strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
                 }
                 Method::RasterSphere => {
+                    if let Some(most) = stage.specular_reach {
+                        return Err(AssignError::Unsupported {
+                            strategy: choice.id().to_string(),
+                            asked: format!("specular terms that reach {most} ranges of their lights"),
+                            reason: "its light volumes end at the lights' ranges".into(),
+                        }
+                        .into());
+                    }
                     raster_spheres(stage, cut)?;
                 }
                 Method::Clay => {}
@@ -273,6 +294,7 @@ mod tests {
             ("--temporal --checks 1", "--checks is 1: "),
             ("--temporal --path --frames 1", "--frames is 1: "),
             ("--unbounded --cut never", "--cut is never: "),
+            ("--specular-reach 4 --cut never", "--cut is never: "),
         ] {
             let error = check(line).expect_err(line).to_string();
             assert!(error.starts_with(refused), "{line}: {error}");

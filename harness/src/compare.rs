@@ -82,6 +82,7 @@ pub fn compare_on(
     check_area_options(args, stage)?;
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
+    stage.specular_reach = args.specular_reach.map(|most| most as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;

@@ -20,7 +20,7 @@ use shading::Mode;
 
 use crate::{
     bench::Bench,
-    checks::{check_motion, served},
+    checks::{check_motion, check_reach, served},
     choice::Choice,
     cli::{CliError, ExplainArgs},
     compare::DEFAULT_PATH_FRAMES,
@@ -99,6 +99,7 @@ pub fn set_stage<'a>(
     let stage = bench.stage(&args.stage)?;
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
+    stage.specular_reach = args.specular_reach.map(|most| most as f32);
     if args.path {
         stage.follow_path(frames);
     }
@@ -129,6 +130,7 @@ fn path_frames(gpu: &Gpu, args: &ExplainArgs) -> u32 {
 /// Refuses options that contradict each other.
 fn check(args: &ExplainArgs) -> Result<(), CliError> {
     check_motion(&args.stage)?;
+    check_reach(args.specular_reach, args.cut)?;
     let (pixel, size) = (args.pixel, args.stage.size);
     if pixel.x >= size.width || pixel.y >= size.height {
         let accepted = format!(

@@ -246,13 +246,15 @@ pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrIm
     let lights: Vec<Light> = known_lights(gpu, &stage.lights)?.iter().map(unbounded).collect();
     let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
     let bounce = stage.bounce.take();
+    // Both terms end nowhere.
+    let reach = stage.specular_reach.take();
     let mut method = Method::everything(gpu)?;
     let image = stage.prepare().and_then(|()| {
         let mut painter = Painter::new(stage, &mut method, mode, Cut::Hard)?;
         draw_unclocked(gpu, stage, mode, &mut painter)?;
         read(gpu, stage)
     });
-    (stage.lights, stage.bounce) = (bounded, bounce);
+    (stage.lights, stage.bounce, stage.specular_reach) = (bounded, bounce, reach);
     image
 }
 

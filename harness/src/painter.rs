@@ -44,6 +44,7 @@ impl<'a> Painter<'a> {
                     area: stage.area_model,
                     compensation: stage.compensation,
                     stochastic: *stochastic,
+                    specular_reach: stage.specular_reach,
                     suns: stage.suns,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;

@@ -149,6 +149,7 @@ pub fn record(
             threshold: args.stage.threshold,
             cut: Some(plan.cut.name().to_owned()),
             compensation: args.compensate,
+            specular_reach: args.specular_reach,
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
             layers: layer_setting(&args.layers),

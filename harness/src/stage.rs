@@ -41,6 +41,8 @@ pub struct Stage {
     pub area_model: AreaModel,
     /// With `--compensate N`, the number N.
     pub compensation: Option<f32>,
+    /// With `--specular-reach N`, the number N.
+    pub specular_reach: Option<f32>,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// What makes them in every frame, if they stay on the GPU.
@@ -125,6 +127,7 @@ impl Stage {
             moving: Moving::new(gpu, args, &scene, lit.lights)?,
             area_model: AreaModel::default(),
             compensation: None,
+            specular_reach: None,
             vpls: None,
             bounce: None,
             vpl_maker: VplMaker::default(),

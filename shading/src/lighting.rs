@@ -1,9 +1,9 @@
 //! The lighting pass: shades all pixels with one strategy's lists, in one mode.
 
-use assign::{AssignError, Assignment, Gpu, Passes, View, texture};
+use assign::{AssignError, Assignment, Gpu, Passes, View, check_listed_reach, texture};
 
 use crate::{
-    LightingOptions, Mode, Renderer, ShadingError,
+    Cut, LightingOptions, Mode, Renderer, ShadingError,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     layers::LayerPasses,
     lighting_inputs::{Bound, LightingInputs},
@@ -77,6 +77,7 @@ impl Lighting {
                 .into());
             }
         }
+        check_reach(options, strategy)?;
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;
@@ -146,6 +147,29 @@ impl Lighting {
         }
         Ok(())
     }
+}
+
+/// Refuses specular terms that reach farther than the strategy's lists, and options that say otherwise how light ends.
+fn check_reach(options: LightingOptions, strategy: &dyn Assignment) -> Result<(), AssignError> {
+    let Some(most) = options.specular_reach else { return Ok(()) };
+    check_listed_reach(strategy, most)?;
+    let without = |field: &str, value: String, accepted: &str| {
+        let (field, accepted) = (field.into(), accepted.into());
+        Err(AssignError::Parameter { field, value, accepted })
+    };
+    if options.cut == Cut::Never {
+        let accepted = "windowed or hard with a specular reach: with never, no term ends";
+        return without("cut", options.cut.name().into(), accepted);
+    }
+    if let Some(lights) = options.compensation {
+        let accepted = "off with a specular reach, which counts lights of one term too";
+        return without("compensation", lights.to_string(), accepted);
+    }
+    if let Some(threshold) = options.stochastic {
+        let accepted = "off with a specular reach: random ranges hold for both terms";
+        return without("stochastic threshold", threshold.to_string(), accepted);
+    }
+    Ok(())
 }
 
 #[derive(Debug)]

@@ -12,7 +12,7 @@ pub(crate) const LIGHTING_BINDING: u32 = 6;
 /// Binding of the table in group 2.
 pub(crate) const LTC_BINDING: u32 = 7;
 
-/// `lighting_uniform.wesl`, `struct LightingUniform`. 16 bytes.
+/// `lighting_uniform.wesl`, `struct LightingUniform`. 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct LightingRecord {
@@ -24,6 +24,10 @@ pub struct LightingRecord {
     pub applicable_lights: f32,
     /// [`LightingOptions::stochastic`]; 0 if it is off.
     pub random_threshold: f32,
+    /// [`LightingOptions::specular_reach`]; 1 if it is off.
+    pub specular_reach: f32,
+    /// Pads to 32 bytes.
+    pub padding: [u32; 3],
 }
 
 /// Binding of `Suns` in group 2.
@@ -95,7 +99,7 @@ pub(crate) struct LightingInputs {
 impl LightingInputs {
     /// Uploads the resources that the options need.
     pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
-        let uniform = gpu.uniform("lighting", 16);
+        let uniform = gpu.uniform("lighting", size_of::<LightingRecord>() as u64);
         options.area.check()?;
         let area_samples = options.area.samples();
         let record = LightingRecord {
@@ -103,6 +107,8 @@ impl LightingInputs {
             area_samples,
             applicable_lights: options.compensation.unwrap_or(0.0),
             random_threshold: options.stochastic.unwrap_or(0.0),
+            specular_reach: options.specular_reach.unwrap_or(1.0),
+            padding: [0; 3],
         };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
         let table = match options.area.table().filter(|_| options.kinds.areas) {

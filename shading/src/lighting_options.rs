@@ -31,6 +31,12 @@ pub struct LightingOptions {
     /// The threshold of stochastic light culling, an irradiance, as in [`Stochastic`](assign::Stochastic). Off
     /// (`None`), it changes no bit.
     pub stochastic: Option<f32>,
+    /// The most that the specular term of a point or a spot reaches, in ranges of the light: 1 to
+    /// [`MAX_SPECULAR_REACH`](assign::MAX_SPECULAR_REACH). The term ends at the window of
+    /// [`specular_reach`](assign::specular_reach) times the range, which depends on the sample's material and its angle
+    /// to the eye. A strategy must [list lights as far](assign::Assignment::specular_reach). Off (`None`), it ends with
+    /// the diffuse term, and nothing is compiled for it.
+    pub specular_reach: Option<f32>,
     /// Suns light every sample in addition to its list. Without suns, none of their code is
     /// compiled and nothing is bound for them.
     pub suns: Suns,
@@ -73,6 +79,7 @@ impl LightingOptions {
             .flag("no_cut", self.cut == Cut::Never)
             .flag("compensation", self.compensation.is_some())
             .flag("stochastic", self.stochastic.is_some())
+            .flag("specular_reach", self.specular_reach.is_some())
             .flag("suns", !self.suns.is_empty());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))

@@ -3,7 +3,7 @@
 
 use std::{iter::Sum, ops::Add};
 
-use assign::{Assignment, Frame, entry, storage_entry, uniform_entry};
+use assign::{AssignError, Assignment, Frame, entry, storage_entry, uniform_entry};
 use bytemuck::pod_collect_to_vec;
 
 use crate::{
@@ -80,6 +80,14 @@ pub fn count_operations(
     exposure: f32,
 ) -> Result<Operations, ShadingError> {
     let gpu = &renderer.gpu;
+    if let Some(most) = options.specular_reach {
+        return Err(AssignError::Parameter {
+            field: "specular reach".into(),
+            value: most.to_string(),
+            accepted: "off while light operations are counted".into(),
+        }
+        .into());
+    }
     renderer.lights.check_counted(gpu, options, strategy.lookup().module.wesl().reader)?;
     let viewport = frame.view.viewport;
     let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 32;

@@ -4,7 +4,7 @@ mod area;
 mod brdf;
 
 use area::SeenArea;
-use assign::{Light, LightShape, MIN_DISTANCE_2, Sun, fall_off};
+use assign::{Light, LightShape, MIN_DISTANCE_2, Sun, fall_off, specular_reach};
 pub(crate) use brdf::{MIN_COS_VIEW, MIN_ROUGHNESS, f0_of, f90_of, ggx, lobes_of};
 pub use brdf::{Reflectance, Surface, reflect_light};
 use glam::DVec3;
@@ -24,6 +24,28 @@ pub fn light_contribution(
         return seen.map_or(DVec3::ZERO, |seen| seen.truth());
     }
     point_contribution(light, position, surface, to_eye)
+}
+
+/// Radiance that one light adds at `position` if its specular term reaches up to `most` ranges, where the surface is
+/// polished ([`assign::specular_reach`]). Area lights keep their ranges.
+pub fn reaching_contribution(
+    light: &Light,
+    position: DVec3,
+    surface: &Surface,
+    to_eye: DVec3,
+    most: f64,
+) -> DVec3 {
+    if matches!(light.shape, LightShape::Area(_)) {
+        return light_contribution(light, position, surface, to_eye);
+    }
+    let f0 = Surface { dielectric: Reflectance::default(), ..*surface };
+    let cos_v = surface.normal.dot(to_eye).abs().max(MIN_COS_VIEW);
+    let reach = specular_reach(surface.roughness, f0_of(&f0).max_element(), cos_v, most);
+    let farther = Light { range_m: (f64::from(light.range_m) * reach) as f32, ..*light };
+    let (near, to_light) = arriving(light, position);
+    let (far, _) = arriving(&farther, position);
+    let lobes = lobes_of(surface, to_eye, to_light);
+    (near * lobes.diffuse + far * lobes.specular) * surface.normal.dot(to_light).max(0.0)
 }
 
 /// Radiance that a sun adds to a surface.

@@ -27,6 +27,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "no_cut",
         "compensation",
         "stochastic",
+        "specular_reach",
         "suns",
         "area_point",
         "area_mrp",

@@ -359,6 +359,8 @@ fn frame_of<'a>(
     Frame {
         depth: surfaces.map(|s| &s.depth),
         normals: surfaces.map(|s| &s.normals),
+        // Lists lack no light whatever surfaces are made of, so any image serves as their materials.
+        base_color: surfaces.map(|s| &s.normals),
         models: Some(&lit.stage.models),
         surface_bounds: lit.stage.surface_bounds(),
         ..Frame::new(&lit.stage.view, lights).sampled_at(samples)

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use assign::{FrustumTests, LightSource};
+use assign::{FrustumTests, LightSource, MAX_SPECULAR_REACH};
 use clap::{Args, ValueEnum};
 use shading::{AreaModel, Cut};
 
@@ -72,6 +72,13 @@ pub struct CompareArgs {
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed", value_parser = named(CUTS, Cut::name), help_heading = SHADING, hide_short_help = true)]
     pub cut: Cut,
+
+    /// Let the specular terms of points and spots reach up to N of their ranges, 1 to 64, where surfaces are polished
+    ///
+    /// How far depends on the surface and its angle to the eye. Strategies whose ids have reachN, and no culling,
+    /// serve it.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with_all = ["compensate", "operations"])]
+    pub specular_reach: Option<f64>,
 
     /// Even out the brightness of virtual point lights: multiply each sample by N / (number of lights that
     /// light it)

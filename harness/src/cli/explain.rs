@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use assign::MAX_SPECULAR_REACH;
 use clap::Args;
 use shading::{AreaModel, Cut, Mode};
 
@@ -66,6 +67,10 @@ pub struct ExplainArgs {
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed", value_parser = named(CUTS, Cut::name), help_heading = SHADING, hide_short_help = true)]
     pub cut: Cut,
+
+    /// Let specular terms reach up to N of their lights' ranges, as for `compare`
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with = "compensate")]
+    pub specular_reach: Option<f64>,
 
     /// Even out the brightness of virtual point lights, as for `compare`
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, 1e9), help_heading = BOUNCE, hide_short_help = true)]

@@ -49,7 +49,7 @@ pub struct StudyArgs {
 
     /// Scene: a name or a .gltf or .glb file; give --scene again for each further scene
     ///
-    /// [default: atrium; of the study stability, all its scenarios]
+    /// [default: atrium; of the study stability, all its scenarios; of gloss, those of gloss and the atrium]
     #[arg(long, value_name = "NAME|FILE", value_parser = values::text)]
     pub scene: Vec<String>,
 

@@ -63,6 +63,9 @@ pub struct Setting {
     /// With `--compensate`: its number of lights.
     #[serde(default)]
     pub compensation: Option<f64>,
+    /// With `--specular-reach`: the most ranges that a specular term reaches; absent if it ends with the diffuse term.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specular_reach: Option<f64>,
     /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, `gpuN` for a sort on the GPU in every
     /// Nth frame, or `gpuN%` for one as soon as boxes may have grown by N percent.
     #[serde(default)]

@@ -221,6 +221,8 @@ fn segment_of(rng: &mut impl Rng, axis: Axis) -> Option<&'static str> {
         Axis::Touched => &["touched"],
         Axis::Exit => &["no-exit"],
         Axis::Specular | Axis::Fewer | Axis::Stochastic | Axis::Reuse | Axis::Cap => return None,
+        // It loses no light, and shows what it gains only where specular terms reach beyond ranges.
+        Axis::Reach => return None,
         // These fail on purpose.
         Axis::Rectangle | Axis::Half | Axis::PlainDepth | Axis::Order => return None,
     };

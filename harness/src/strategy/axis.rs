@@ -1,6 +1,6 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
-use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage, check_threshold};
+use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage, check_specular_reach, check_threshold};
 use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
@@ -15,6 +15,8 @@ const NEAR: &str = "near";
 const CASCADES: &str = "cascades";
 /// The prefix of a segment that sets the bins of normals.
 const NORMALS: &str = "n";
+/// The prefix of a segment that lists lights for their specular term beyond their range.
+const REACH: &str = "reach";
 /// The prefix of a segment that sets the most lights of a list.
 const CAP: &str = "cap";
 /// The prefix of a segment that makes ranges random below an irradiance.
@@ -51,6 +53,8 @@ pub enum Axis {
     Normals,
     /// Which specular light of area lights is left out: `s0.001`, `cone45` or `dif`. Lossy.
     Specular,
+    /// Out to how many of its ranges a light is listed for its specular term, at most: `reach8`.
+    Reach,
     /// The union of frustum tests: `hs+sat-n`.
     Tests,
     /// Where lights come from: `linear` or `bvh`.
@@ -93,6 +97,7 @@ impl Axis {
         Self::Box,
         Self::Normals,
         Self::Specular,
+        Self::Reach,
         Self::Tests,
         Self::Source,
         Self::AreaBounds,
@@ -137,6 +142,10 @@ impl Axis {
                 "the specular light to leave out: s and a radiance, such as s0.001; cone and the half \
                  angle of a lobe in degrees, such as cone45 (Swarbrick 2025); or dif, which leaves out \
                  all beyond the reach of diffuse light"
+            }
+            Self::Reach => {
+                "reach and the ranges out to which polished surfaces have lights for their specular term, such as \
+                 reach8"
             }
             Self::Cap => "cap and the most lights of a list, such as cap32",
             Self::Fewer => {
@@ -189,6 +198,7 @@ impl Axis {
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(STOCHASTIC) => Some(Self::Stochastic),
+            _ if segment.starts_with(REACH) => Some(Self::Reach),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
             _ if segment.starts_with(KEEP) => Some(Self::Keep),
             _ => segment.parse::<FrustumTests>().ok().map(|_| Self::Tests),
@@ -218,6 +228,11 @@ impl Axis {
                 options.normals = normals;
             }
             Self::Specular => options.specular = specular::parse(segment)?,
+            Self::Reach => {
+                let most = segment.strip_prefix(REACH)?.parse().ok()?;
+                check_specular_reach(most).ok()?;
+                options.reach = Some(most);
+            }
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Fewer => options.fewer = Some(fewer_of(segment)?),
             Self::Stochastic => {
@@ -267,6 +282,7 @@ impl Axis {
                 Normals::Bins(count) => Some(format!("{NORMALS}{count}")),
             },
             Self::Specular => specular::segment(options.specular),
+            Self::Reach => options.reach.map(|most| format!("{REACH}{most}")),
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Fewer => options.fewer.map(|(kept, most)| format!("{}{most}", kept.name())),
             Self::Stochastic => {
@@ -311,6 +327,7 @@ impl Axis {
                 SpecularCut::ReflectedCone(degrees) => ("lobe_degrees", shortest(degrees)),
                 SpecularCut::WhereDiffuse => ("specular_where_diffuse", true.into()),
             },
+            Self::Reach => ("specular_reach", shortest(options.reach?)),
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Fewer => ("frame_cap", self.segment(options)?.into()),
             Self::Stochastic => ("stochastic_threshold", shortest(options.stochastic?)),

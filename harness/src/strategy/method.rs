@@ -63,6 +63,8 @@ pub struct Options {
     pub normals: Normals,
     /// Which specular light of area lights is left out.
     pub specular: SpecularCut,
+    /// Out to how many of its ranges a light is listed for its specular term, at most.
+    pub reach: Option<f32>,
     /// The most lights of a list.
     pub cap: Option<u32>,
     /// Which lights of a frame have lists, and how many.

@@ -109,6 +109,19 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
         let reason = "a light that moves may leave the frame's lights, or enter them";
         return Err(contradiction(id, &fewer, &source, reason));
     }
+    if let Some(reach) = Axis::Reach.segment(options) {
+        let at_range = "its clusters end at the lights' ranges";
+        for (other, reason) in [
+            (Axis::Normals, at_range),
+            (Axis::Specular, at_range),
+            (Axis::Storage, "only plain lists hold lights beyond their range"),
+            (Axis::Touched, "changed lights are looked for within their range"),
+        ] {
+            if let Some(segment) = other.segment(options) {
+                return Err(contradiction(id, &reach, &segment, reason));
+            }
+        }
+    }
     for (flaw, other, reason) in [
         (
             Axis::Half,

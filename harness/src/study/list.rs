@@ -1,6 +1,8 @@
 //! The list of all studies: the one place that names them.
 
-use super::{area, cdi, comparison, culling, endless, engines, living, slice::Study, stability};
+use super::{
+    area, cdi, comparison, culling, endless, engines, gloss, living, slice::Study, stability,
+};
 use crate::cli::CliError;
 
 /// All studies, in the order in which the command line lists them.
@@ -13,6 +15,7 @@ pub(crate) const STUDIES: &[Study] = &[
     cdi::STUDY,
     engines::STUDY,
     stability::STUDY,
+    gloss::STUDY,
 ];
 
 /// Name of each study, and what it answers.

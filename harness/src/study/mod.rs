@@ -18,6 +18,7 @@ mod culling;
 mod data;
 mod endless;
 mod engines;
+mod gloss;
 mod job;
 mod list;
 mod living;

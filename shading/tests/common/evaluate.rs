@@ -44,7 +44,7 @@ pub(crate) fn evaluate(
     bindings.update(gpu, &Frame::new(&view, lights)).unwrap();
     let asked = upload(gpu, "queries", queries).unwrap();
     let answered = upload(gpu, "answers", &vec![[0.0_f32; 4]; queries.len()]).unwrap();
-    let numbers = upload(gpu, "lighting", &[0, area.samples(), 0, 0]).unwrap();
+    let numbers = upload(gpu, "lighting", &[0, area.samples(), 0, 0, 0, 0, 0, 0]).unwrap();
     let table = shading::ltc::Table::load(area.table().unwrap_or_default()).unwrap();
     let looked_up = upload(gpu, "table", table.as_bytes()).unwrap();
     let shader = shading::lighting_shader()

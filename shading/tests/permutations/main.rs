@@ -232,6 +232,8 @@ fn deferred() {
             Flags::from(["stochastic", "spots", "hard_cut"]),
             Flags::from(["no_cut"]),
             Flags::from(["stochastic", "spots", "no_cut"]),
+            Flags::from(["specular_reach"]),
+            Flags::from(["specular_reach", "spots", "hard_cut"]),
         ] {
             check_compute("deferred", &flags, look_up, look_up.2, &[0, 1, 2, 4, 6]);
         }
@@ -331,6 +333,16 @@ fn without_suns_the_shader_has_no_sun_code() {
     let (with, without) = (source(&["suns"]), source(&[]));
     assert!(with.source.contains("sun_light") && with.bindings.contains(&(2, 10)));
     assert!(!without.source.contains("sun") && !without.bindings.contains(&(2, 10)));
+}
+
+/// Without the option, nothing of the reach of specular terms is compiled.
+#[test]
+fn without_a_specular_reach_the_shader_has_none() {
+    let has_reach = |flags: &[&'static str]| {
+        let flags = flags.iter().copied().collect();
+        link("package::deferred", &flags, Some(LOOK_UPS[0])).source.contains("lobe_peak")
+    };
+    assert!(has_reach(&["spots", "specular_reach"]) && !has_reach(&["spots"]));
 }
 
 /// Without area lights, a scene compiles none of their code and binds nothing for them, whatever

@@ -28,6 +28,7 @@ fn ids_in_any_case_and_order_become_canonical() {
         ("g/BALL/surfaces", "G/20x20x20/surfaces/ball"),
         ("SC-E/s0.001/n24", "SC-E/48x48x40/n24/s0.001"),
         ("SC-E/CONE45/n24", "SC-E/48x48x40/n24/cone45"),
+        ("SC-E/bvh/REACH2.50", "SC-E/48x48x40/reach2.5/bvh"),
         ("SC-E/dif/bvh/no-exit", "SC-E/48x48x40/dif/bvh/no-exit"),
     ] {
         assert_eq!(id(given).as_str(), canonical, "{given}");

@@ -59,6 +59,7 @@ pub(super) const ROWS: &[Row] = &[
             Axis::Slices,
             Axis::Normals,
             Axis::Specular,
+            Axis::Reach,
             Axis::Source,
             Axis::AreaBounds,
             Axis::Storage,
@@ -224,8 +225,8 @@ fn make(
     occupancy: Occupancy,
 ) -> Result<Method, AssignError> {
     let size = options.parameters.parse()?;
-    let Options { slices, normals, specular: cut, .. } = *options;
+    let Options { slices, normals, specular: cut, reach, .. } = *options;
     let settings = options.settings();
-    let clusters = ClusterOptions { size, bounds, occupancy, slices, normals, cut, settings };
+    let clusters = ClusterOptions { size, bounds, occupancy, slices, normals, cut, reach, settings };
     Ok(Method::lists(Clustered::with_options(gpu, clusters)?))
 }

@@ -61,6 +61,7 @@ fn ids_are_those_of_the_strategies() {
         "SC-E/n24/s0.001/bvh",
         "SC-E/n6/cone45",
         "SC-E/dif/bvh",
+        "SC-E/cascades2/reach8/bvh",
         "G/8x8x8/supports/bvh",
         "G/surfaces/ball",
         "G/8x8x8/frustum/bvh",

@@ -17,6 +17,8 @@ mod outcome;
 mod page;
 mod sentences;
 
+pub(crate) use jobs::scenario_of;
+
 use super::claims::Paper;
 use super::slice::{Study, TakesMotion};
 use crate::report::markup::Html;
