@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         label: None,
         bind_group_layouts: &[
             Some(bindings.layout()),
-            Some(strategy.lookup().layout),
+            Some(strategy.lookup().layout()),
             Some(&image_layout),
         ],
         immediate_size: 0,

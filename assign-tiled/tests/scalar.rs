@@ -161,7 +161,7 @@ fn read(make: &impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError>) -> Vec
     let found = upload(&gpu, "found", &[u32::MAX; 64 * 1024]).expect("a buffer");
     let groups = [
         Bound::Group(bindings.layout(), bindings.bind_group().expect("a frame")),
-        Bound::Group(lookup.layout, strategy.bind_group().expect("lists")),
+        Bound::Group(lookup.layout(), strategy.bind_group().expect("lists")),
         Bound::Buffers(&[(0, Slot::Write, &found)]),
     ];
     run_kernel(&gpu, &module, "gather", &groups, 1);

@@ -99,7 +99,7 @@ impl Assignment for Walk {
         // SAFETY: the module has no loop.
         #[allow(unsafe_code, reason = "it has no loop")]
         let module = unsafe { StrategyModule::new(walk_wesl(self.team, self.source)) };
-        Lookup { module, layout: self.bindings.layout(), shape: None }
+        Lookup { module, bindings: &self.bindings, shape: None }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {

@@ -1,6 +1,9 @@
 //! The trait that every strategy implements.
 
-use crate::{AssignError, Frame, Gpu, GroupShape, LightLists, Needs, Passes, StrategyModule};
+use crate::{
+    AssignError, Frame, Gpu, GroupShape, LightKinds, LightLists, ListsBindings, Needs, Passes,
+    Shader, Slots, StrategyModule,
+};
 
 /// A strategy: groups of view samples, a function from a sample to its group, and a list of
 /// lights for each group.
@@ -57,27 +60,79 @@ pub trait Assignment {
     fn memory_bytes(&self) -> u64;
 }
 
-/// What a renderer links into its own shading shader.
+/// What a renderer adds to its own shading shader, in one of two ways:
 ///
-/// Mount `module` with [`Shader::strategy`](crate::Shader::strategy). Import `open_lights` and `next_light` from
-/// `package::look_up`. Bind [`Assignment::bind_group`] at the group that the
-/// shader was made for.
+/// - Plain WGSL: [`wgsl`](Self::wgsl) is text for any shader system, and [`layout_entries`](Self::layout_entries) and
+///   [`bind_entries`](Self::bind_entries) are for one of the renderer's own bind groups.
+/// - WESL: mount `module` with [`Shader::strategy`](crate::Shader::strategy), and import `open_lights` and `next_light`
+///   from `package::look_up`. Bind [`Assignment::bind_group`] at the group that the shader was made for.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {
     /// WESL that defines `fn group_of(sample: ViewSample) -> u32`.
     pub module: StrategyModule,
-    /// Layout of the lists and of what the module reads.
-    pub layout: &'a wgpu::BindGroupLayout,
+    /// The lists and what the module reads.
+    pub bindings: &'a ListsBindings,
     /// The shape of the bounds that the module's `group_bounds(group: u32) -> GroupBounds` returns. `None` if it
     /// has no such function, or if the bounds are not kept after culling. To call it, mount the shape with
     /// [`Shader::group_bounds`](crate::Shader::group_bounds).
     pub shape: Option<GroupShape>,
 }
 
-impl Lookup<'_> {
+impl<'a> Lookup<'a> {
     /// Whether samples of one group may read different lights. The strategy's lists then do not say what a
     /// sample reads; only the look-up does.
     pub fn is_per_sample(&self) -> bool {
         self.module.wesl().reader.is_per_sample()
+    }
+
+    /// The look-up as WGSL for any shader stage and all kinds of lights. It is self-contained, has no entry point, and
+    /// every global name in it begins with the prefix. It never changes during the strategy's life.
+    ///
+    /// With the prefix `lb_`, a renderer uses:
+    ///
+    /// | WGSL | |
+    /// |---|---|
+    /// | `lb_sample_at(pixel: vec2f, depth_clip: f32, normal_world: vec3f, model_ix: u32) -> lb_ViewSample` | the sample at a pixel centre of the target |
+    /// | `lb_open_lights(sample: lb_ViewSample) -> lb_LightCursor` | starts at the sample's first light |
+    /// | `lb_next_light(cursor: ptr<function, lb_LightCursor>) -> bool` | finds the next light, in ascending index |
+    /// | `cursor.entry & lb_ENTRY_LIGHT` | the light's index |
+    /// | `lb_light_spheres[i]` | `position_world`, `radius_m` |
+    /// | `lb_light_emissions[i]` | `intensity`, `kind_and_shape` |
+    /// | `lb_fall_off(distance_2: f32, range_m: f32, least_2: f32) -> f32` | the fall-off that ends at the light's range; `least_2` is `lb_MIN_DISTANCE_2` |
+    /// | `lb_view` | the view: [`ViewUniform`](crate::ViewUniform) |
+    ///
+    /// For fewer kinds of lights, or for the subgroup operations of compute shaders, call
+    /// [`Shader::wgsl`](crate::Shader::wgsl).
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for a prefix that begins no name, and [`AssignError::Shader`] if two variables would have
+    /// the same binding.
+    pub fn wgsl(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
+        Shader::new(slots.lists_group)
+            .strategy(self.module)
+            .light_kinds(LightKinds { spots: true, areas: true })
+            .without_subgroups()
+            .wgsl(slots)
+    }
+
+    /// The layout of [`Assignment::bind_group`].
+    pub fn layout(&self) -> &'a wgpu::BindGroupLayout {
+        self.bindings.layout()
+    }
+
+    /// Layout entries for one of the renderer's own bind groups. The look-up takes bindings from `first_binding` on, with
+    /// gaps. `stages` are the shader stages that look lights up.
+    pub fn layout_entries(
+        &self,
+        first_binding: u32,
+        stages: wgpu::ShaderStages,
+    ) -> Vec<wgpu::BindGroupLayoutEntry> {
+        self.bindings.layout_entries(first_binding, stages)
+    }
+
+    /// The entries of that bind group. [`Assignment::prepare`] may replace them. They are empty before the first one.
+    pub fn bind_entries(&self, first_binding: u32) -> Vec<wgpu::BindGroupEntry<'a>> {
+        self.bindings.bind_entries(first_binding)
     }
 }

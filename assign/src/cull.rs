@@ -322,7 +322,7 @@ impl Culler {
     pub fn lookup(&self) -> Lookup<'_> {
         // The lanes that cull a group find its bounds, and no buffer keeps them.
         let shape = (!self.module.wesl().finds_bounds_by_lanes()).then_some(self.variant.shape);
-        Lookup { module: self.module, layout: self.look_up.layout(), shape }
+        Lookup { module: self.module, bindings: &self.look_up, shape }
     }
 
     /// The look-up's bind group; `None` before the first [`prepare`](Self::prepare).

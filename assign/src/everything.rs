@@ -53,7 +53,7 @@ impl Assignment for Everything {
         // SAFETY: it has no loop.
         #[allow(unsafe_code, reason = "it has no loop")]
         let module = unsafe { StrategyModule::new(include_str!("shaders/everything.wesl")) };
-        Lookup { module, layout: self.bindings.layout(), shape: None }
+        Lookup { module, bindings: &self.bindings, shape: None }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {

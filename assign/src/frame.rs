@@ -7,6 +7,7 @@ use glam::Vec3;
 use crate::{
     AssignError, Gpu, Light, LightBuffer, LightChanges, LightOrder, ModelBox, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
+    plain_wgsl::FRAME_BINDINGS,
 };
 
 /// Where shading looks up lists.
@@ -237,7 +238,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Bind group 0 of every pass: the view and the lights.
+/// The view and the lights: bind group 0 of every pass, or part of a renderer's own bind group.
 ///
 /// | binding | WESL | |
 /// |---|---|---|
@@ -249,6 +250,8 @@ impl<'a> Frame<'a> {
 pub struct FrameBindings {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
+    /// The lights' spheres, emissions and shapes.
+    lights: Option<[wgpu::Buffer; 3]>,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -257,16 +260,13 @@ impl FrameBindings {
     pub fn new(gpu: &Gpu) -> Self {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let of_lights = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let entries = [
-            uniform_entry(0, stages),
-            storage_entry(1, stages, true),
-            storage_entry(2, of_lights, true),
-            storage_entry(3, of_lights, true),
-        ];
-        let layout = gpu.bind_group_layout("frame", &entries);
+        let mut entries = Self::layout_entries(0, stages);
+        entries[2].visibility = of_lights;
+        entries[3].visibility = of_lights;
         Self {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
-            layout,
+            layout: gpu.bind_group_layout("frame", &entries),
+            lights: None,
             bind_group: None,
         }
     }
@@ -276,15 +276,13 @@ impl FrameBindings {
         frame.view.check()?;
         let uniform = ViewUniform { seed: frame.seed, ..frame.view.uniform() };
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
+        let lights = frame.lights;
+        self.lights =
+            Some([lights.spheres(), lights.emissions(), lights.shapes()].map(Clone::clone));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: &self.layout,
-            entries: &[
-                entry(0, &self.uniform),
-                entry(1, frame.lights.spheres()),
-                entry(2, frame.lights.emissions()),
-                entry(3, frame.lights.shapes()),
-            ],
+            entries: &self.bind_entries(0),
         }));
         Ok(())
     }
@@ -302,5 +300,29 @@ impl FrameBindings {
     /// The bind group; `None` before the first [`update`](Self::update).
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
         self.bind_group.as_ref()
+    }
+
+    /// Layout entries for one of a renderer's own bind groups, in which these four bindings begin at `first_binding`.
+    /// `stages` are the shader stages that read them.
+    pub fn layout_entries(
+        first_binding: u32,
+        stages: wgpu::ShaderStages,
+    ) -> Vec<wgpu::BindGroupLayoutEntry> {
+        let mut entries = vec![uniform_entry(first_binding, stages)];
+        let lights = 1..FRAME_BINDINGS;
+        entries
+            .extend(lights.map(|ix| storage_entry(first_binding.saturating_add(ix), stages, true)));
+        entries
+    }
+
+    /// The entries of such a bind group. [`update`](Self::update) replaces them if lights move to other buffers. They are
+    /// empty before the first one.
+    pub fn bind_entries(&self, first_binding: u32) -> Vec<wgpu::BindGroupEntry<'_>> {
+        let Some(lights) = &self.lights else { return Vec::new() };
+        let buffers = [&self.uniform].into_iter().chain(lights);
+        (0..)
+            .zip(buffers)
+            .map(|(ix, buffer)| entry(first_binding.saturating_add(ix), buffer))
+            .collect()
     }
 }

@@ -2,12 +2,20 @@
 
 use std::borrow::Cow;
 
-use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
+use wesl::{
+    CompileOptions, CompileResult, Feature, ManglerKind, SyntaxUtil, VirtualResolver, Wesl,
+};
 
 use crate::{
-    AssignError, Gpu, GroupShape, LightKinds, LightReader, Storage, StrategyWesl,
-    compiled::ModuleKey, light_reader::BOUNDS_BOX_WESL,
+    AssignError, Gpu, GroupShape, LightKinds, LightReader, Slots, Storage, StrategyWesl,
+    compiled::ModuleKey,
+    light_reader::BOUNDS_BOX_WESL,
+    link_errors,
+    plain_wgsl::{self, PrefixMangler},
 };
+
+/// The root module of a look-up's plain text.
+const PLAIN_ROOT: &str = "package::plain";
 
 /// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
 /// to WGSL.
@@ -126,7 +134,48 @@ impl<'a> Shader<'a> {
     }
 
     /// Links `root` and everything that it imports. Keeps all its entry points.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Shader`] if a module does not parse, lacks something or has no entry point.
     pub fn link(&self, root: &str) -> Result<String, AssignError> {
+        let linked = self.compile(root, None, None)?;
+        if linked.syntax.entry_points().next().is_none() {
+            return Err(AssignError::Shader {
+                module: root.to_owned(),
+                reason: "it has no entry point, so nothing of it is kept: add one, or take a look-up's text from Lookup::wgsl".into(),
+            });
+        }
+        Ok(linked.to_string())
+    }
+
+    /// The mounted strategy's look-up as plain WGSL, as [`Lookup::wgsl`](crate::Lookup::wgsl) returns it, compiled for the
+    /// [kinds of lights](Self::light_kinds) of this shader. It uses subgroup operations if the look-up has any, unless
+    /// [`without_subgroups`](Self::without_subgroups) was called.
+    ///
+    /// # Errors
+    ///
+    /// As [`Lookup::wgsl`](crate::Lookup::wgsl). [`AssignError::Shader`] also if no strategy is mounted.
+    pub fn wgsl(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
+        slots.check()?;
+        let is_on = |name: &str| self.flags.iter().any(|(known, value)| known == name && *value);
+        let root = plain_wgsl::root_module(is_on("spots") || is_on("areas"));
+        let shader = self.clone().module(PLAIN_ROOT, root);
+        let keep = Some(vec![plain_wgsl::KEPT.to_owned()]);
+        let mut linked = shader.compile(PLAIN_ROOT, keep, Some(slots.prefix))?;
+        plain_wgsl::place(&mut linked.syntax, slots)
+            .map_err(|reason| AssignError::Shader { module: "package::look_up".into(), reason })?;
+        Ok(linked.to_string())
+    }
+
+    /// Links `root` and what it imports. `keep` names the declarations to keep; `None` keeps all entry points. All but
+    /// those of `root` get the prefix.
+    fn compile(
+        &self,
+        root: &str,
+        keep: Option<Vec<String>>,
+        prefix: Option<&str>,
+    ) -> Result<CompileResult, AssignError> {
         let fail = |reason: String| AssignError::Shader { module: root.to_owned(), reason };
         let is_taken = |name: &str| self.flags.iter().any(|(known, _)| known == name);
         if let Some((name, _)) = self.strategy_flags.iter().find(|(name, _)| is_taken(name)) {
@@ -140,16 +189,23 @@ impl<'a> Shader<'a> {
             resolver.add_module(path, Cow::Borrowed(source.as_ref()));
         }
         let mut compiler = Wesl::new_barebones().set_custom_resolver(resolver);
-        let mut options = CompileOptions::default();
+        let mut options = CompileOptions { keep, ..CompileOptions::default() };
         options.features.default = Feature::Error;
         compiler.set_options(options);
         for (name, value) in self.all_flags() {
             compiler.set_feature(&name, value);
         }
-        compiler.keep_all_entrypoints();
+        if let Some(prefix) = prefix {
+            compiler.set_custom_mangler(PrefixMangler(prefix.to_owned()));
+        }
         compiler.use_sourcemap(true);
         let root = root.parse().map_err(|e| fail(format!("module path: {e:?}")))?;
-        compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
+        let mut linked = compiler.compile(&root);
+        // If two modules declare one name, all names get the path of their module.
+        if prefix.is_none() && linked.as_ref().is_err_and(link_errors::is_clash) {
+            linked = compiler.set_mangler(ManglerKind::Escape).compile(&root);
+        }
+        linked.map_err(|e| fail(link_errors::words(&e)))
     }
 
     /// Links `root` and makes a shader module from it, once per device. The GPU checks every index.

@@ -15,13 +15,22 @@ use harness::{
 /// Stands before the table of strategies.
 const STRATEGIES: &str = "<!-- strategies -->\n";
 
+/// Stands before the table of what a renderer provides for each.
+const PLUG_IN: &str = "<!-- plug-in -->\n";
+
 #[test]
 fn the_readme_lists_every_strategy_as_the_registry_does() {
     let path = root().join("README.md");
     let readme = std::fs::read_to_string(&path).expect("README.md");
-    let (before, rest) = readme.split_once(STRATEGIES).expect("README.md has the table");
-    let (_, behind) = rest.split_once(END).expect("the table ends");
-    check_fresh(&path, &format!("{before}{STRATEGIES}{}{END}{behind}", strategy::markdown()));
+    let gpu = assign::Gpu::noop().expect("a device");
+    let plug_in = strategy::plug_in_markdown(&gpu).expect("a table");
+    let fresh = [(STRATEGIES, strategy::markdown()), (PLUG_IN, plug_in)];
+    let fresh = fresh.into_iter().fold(readme, |readme, (mark, table)| {
+        let (before, rest) = readme.split_once(mark).expect("README.md has the table");
+        let (_, behind) = rest.split_once(END).expect("the table ends");
+        format!("{before}{mark}{table}{END}{behind}")
+    });
+    check_fresh(&path, &fresh);
 }
 
 /// Stands before a table that is made from a file of results.

@@ -199,7 +199,7 @@ impl Deferred {
         // and the strategy's author guarantees it of its own.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
-        let layouts = [Some(renderer.frame.layout()), Some(lists.lookup.layout), Some(&layout)];
+        let layouts = [Some(renderer.frame.layout()), Some(lists.lookup.layout()), Some(&layout)];
         let pipeline = gpu.compute_pipeline(&module, "shade", &layouts, true);
         Ok(Self { pipeline, layout, images, inputs })
     }

@@ -53,7 +53,7 @@ impl PixelPass<'_> {
             }
         }
         let module = shader.create(gpu, &format!("package::{}", self.name))?;
-        let lists = lookup.map(|lookup| lookup.layout);
+        let lists = lookup.map(|lookup| lookup.layout());
         let layouts = [Some(renderer.frame.layout()), lists, Some(&layout)];
         let pipeline = gpu.compute_pipeline(&module, self.entry_point, &layouts, true);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -217,10 +217,10 @@ fn pipeline(
     let (vertex, fragment, formats) = entry_points(pass, key, shown);
     let (lists, scene_layout) = match pass {
         RasterPass::Forward { lists, .. } => {
-            (Some(lists.lookup.layout), scene.layout(lists.options.bound()))
+            (Some(lists.lookup.layout()), scene.layout(lists.options.bound()))
         }
         RasterPass::Sheets(SheetPass { lists, layout, .. }) => {
-            (lists.map(|lists| lists.lookup.layout), layout)
+            (lists.map(|lists| lists.lookup.layout()), layout)
         }
         _ => (None, scene.layout(Bound { table: false, suns: false })),
     };

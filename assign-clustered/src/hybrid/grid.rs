@@ -87,7 +87,7 @@ impl Assignment for HybridGrid {
         // SAFETY: its modules have no loop.
         #[allow(unsafe_code, reason = "they have no loop")]
         let module = unsafe { StrategyModule::new(HYBRID_WESL) };
-        Lookup { module, layout: self.look_up.layout(), shape: None }
+        Lookup { module, bindings: &self.look_up, shape: None }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {

@@ -161,7 +161,7 @@ impl Rig {
             .light_kinds(kinds)
             .create(&self.gpu, "package::probe")?;
         let probe = if dump { &self.dump_layout } else { &self.probe_layout };
-        let layouts = [Some(frame.layout()), Some(lookup.layout), Some(probe)];
+        let layouts = [Some(frame.layout()), Some(lookup.layout()), Some(probe)];
         Ok(self.gpu.compute_pipeline(&module, "look_up", &layouts, true))
     }
 

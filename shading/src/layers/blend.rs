@@ -179,7 +179,7 @@ fn particle_pipeline(
         label: Some("particles"),
         bind_group_layouts: &[
             Some(renderer.frame.layout()),
-            lists.map(|lists| lists.lookup.layout),
+            lists.map(|lists| lists.lookup.layout()),
             Some(drawn),
         ],
         immediate_size: 0,

@@ -123,6 +123,6 @@ fn fog_light(
     // strategy's author guarantees it of its own.
     #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::fog_light") }?;
-    let layouts = [Some(renderer.frame.layout()), Some(lookup.layout), Some(&layout)];
+    let layouts = [Some(renderer.frame.layout()), Some(lookup.layout()), Some(&layout)];
     Ok((gpu.compute_pipeline(&module, "light_froxels", &layouts, true), layout))
 }
