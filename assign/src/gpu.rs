@@ -302,7 +302,9 @@ fn enumerate() -> Result<Vec<wgpu::Adapter>, AssignError> {
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     if adapters.is_empty() {
         let names: Vec<&str> = backends.iter_names().map(|(name, _)| name).collect();
-        return Err(AssignError::NoAdapter { looked_for: format!("looked for {}", names.join(", ")) });
+        return Err(AssignError::NoAdapter {
+            looked_for: format!("looked for {}", names.join(", ")),
+        });
     }
     Ok(adapters)
 }
@@ -317,7 +319,7 @@ fn compiled_back_ends(
         return Err(AssignError::Parameter {
             field: "back end of wgpu".into(),
             value: "none".into(),
-            accepted: format!("{features}: enable one of these features of wgpu in the program"),
+            accepted: format!("{features}, a feature of wgpu that the program enables"),
         });
     }
     Ok(compiled)
@@ -330,5 +332,22 @@ fn rank(device_type: wgpu::DeviceType) -> u32 {
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_without_a_back_end_gets_an_error() {
+        let noop = compiled_back_ends(wgpu::Backends::all(), "noop").expect("tests enable noop");
+        assert!(noop.contains(wgpu::Backends::NOOP));
+        // No native program has it.
+        let missing = compiled_back_ends(wgpu::Backends::BROWSER_WEBGPU, "vulkan or metal");
+        assert_eq!(
+            missing.map_err(|e| e.to_string()),
+            Err("back end of wgpu is none: it must be vulkan or metal, a feature of wgpu that the program enables".into())
+        );
     }
 }

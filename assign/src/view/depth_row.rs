@@ -99,7 +99,7 @@ impl View {
     ///
     /// `near_m` becomes the nearest view depth of the plane in the window. The far plane tilts too. It cuts away
     /// nothing in front of `far_m`, which becomes its farthest view depth, or `None` (Lengyel 2005, "Oblique View
-    /// Frustum Depth Projection and Clipping", equation 12, for clip depths from 0 to 1).
+    /// Frustum Depth Projection and Clipping", here for clip depths from 0 to 1).
     ///
     /// [`View::check`] refuses the view if the plane hides all of the window, or if the eye lies on the side that the
     /// plane shows.
