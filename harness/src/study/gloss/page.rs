@@ -100,8 +100,8 @@ fn table(done: &Done, scene: &str, all: &[Entry<'_>]) -> Html {
         error_of("flip", "FLIP", "", difference),
         Column::figure("channels that differ", "", Better::Zero, differing, number).id("differing"),
     ];
-    let row = |entry: &Entry<'_>| Row::new(entry.record.strategy.to_string(), entry.record);
-    let rows = all.iter().map(|entry| row(entry)).collect();
+    let records = all.iter().map(|entry| entry.record);
+    let rows = records.map(|record| Row::new(record.strategy.to_string(), record)).collect();
     Table::new("method", columns, rows)
         .competing(|_| false)
         .dotted(|record| record.strategy.class())
