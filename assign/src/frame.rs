@@ -5,7 +5,8 @@ use bytemuck::bytes_of;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightBuffer, LightChanges, LightOrder, ModelBox, View, ViewUniform,
+    AssignError, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges, LightOrder,
+    ModelBox, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
 };
 
@@ -249,7 +250,7 @@ impl<'a> Frame<'a> {
 pub struct FrameBindings {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
 }
 
 impl FrameBindings {
@@ -267,26 +268,41 @@ impl FrameBindings {
         Self {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
             layout,
-            bind_group: None,
+            bound: KeptBindGroup::default(),
         }
     }
 
-    /// Checks and uploads the view, and binds the lights.
+    /// Checks and uploads the view, and binds the lights. The view takes effect with the next submission, for all that
+    /// it holds: a renderer that draws several views in one submission has one `FrameBindings` per view. The bind group
+    /// stays the same while the lights' buffers do.
     pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        frame.view.check()?;
-        let uniform = ViewUniform { seed: frame.seed, ..frame.view.uniform() };
+        let uniform = view_uniform(frame)?;
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, &self.uniform),
-                entry(1, frame.lights.spheres()),
-                entry(2, frame.lights.emissions()),
-                entry(3, frame.lights.shapes()),
-            ],
-        }));
+        self.bind(gpu, frame.lights);
         Ok(())
+    }
+
+    /// As [`update`](Self::update), but the view takes effect where `writes` are recorded. Strategies use it.
+    pub fn update_in(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        writes: &mut FrameWrites,
+    ) -> Result<(), AssignError> {
+        let uniform = view_uniform(frame)?;
+        writes.write(&self.uniform, 0, bytes_of(&uniform))?;
+        self.bind(gpu, frame.lights);
+        Ok(())
+    }
+
+    fn bind(&mut self, gpu: &Gpu, lights: &LightBuffer) {
+        let entries = [
+            entry(0, &self.uniform),
+            entry(1, lights.spheres()),
+            entry(2, lights.emissions()),
+            entry(3, lights.shapes()),
+        ];
+        self.bound.bind(gpu, "frame", &self.layout, &entries);
     }
 
     /// Bytes of the view's buffer, without the lights.
@@ -301,6 +317,11 @@ impl FrameBindings {
 
     /// The bind group; `None` before the first [`update`](Self::update).
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bind_group.as_ref()
+        self.bound.get()
     }
+}
+
+fn view_uniform(frame: &Frame<'_>) -> Result<ViewUniform, AssignError> {
+    frame.view.check()?;
+    Ok(ViewUniform { seed: frame.seed, ..frame.view.uniform() })
 }

@@ -2,7 +2,7 @@
 //! shading.
 
 use crate::{
-    Gpu, LightLists,
+    Gpu, KeptBindGroup, LightLists,
     entries::{entry, storage_entry, uniform_entry},
 };
 
@@ -13,16 +13,16 @@ pub const FIRST_STRATEGY_BINDING: u32 = 4;
 ///
 /// | binding | WESL | kernel | look-up |
 /// |---|---|---|---|
-/// | 0 | `lists` | written | read |
+/// | 0 | `lists`; in kernels `reserve::records`, with the counters | written | read |
 /// | 1 | `entries` | written | read |
-/// | 2 | `reserve::counters` | written | |
+/// | 2 | free | | |
 /// | 3 | `reserve::cull` | uniform | |
 /// | from [`FIRST_STRATEGY_BINDING`] | the strategy's own | | |
 #[derive(Debug)]
 pub struct ListsBindings {
     layout: wgpu::BindGroupLayout,
     in_kernel: bool,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
 }
 
 impl ListsBindings {
@@ -32,7 +32,6 @@ impl ListsBindings {
         let lists = [
             storage_entry(0, stages, false),
             storage_entry(1, stages, false),
-            storage_entry(2, stages, false),
             uniform_entry(3, stages),
         ];
         Self::new(gpu, label, true, &[&lists, bindings].concat())
@@ -52,22 +51,18 @@ impl ListsBindings {
         entries: &[wgpu::BindGroupLayoutEntry],
     ) -> Self {
         let layout = gpu.bind_group_layout(label, entries);
-        Self { layout, in_kernel, bind_group: None }
+        Self { layout, in_kernel, bound: KeptBindGroup::default() }
     }
 
     /// Binds the lists and the strategy's resources. Call it after each [`LightLists::prepare`],
-    /// which may replace buffers.
+    /// which may replace buffers. The bind group stays the same while they do.
     pub fn bind(&mut self, gpu: &Gpu, lists: &LightLists, resources: &[wgpu::BindGroupEntry<'_>]) {
         let mut entries = vec![entry(0, lists.lists()), entry(1, lists.entries())];
         if self.in_kernel {
-            entries.extend([entry(2, lists.counters()), entry(3, lists.uniform())]);
+            entries.push(entry(3, lists.uniform()));
         }
         entries.extend_from_slice(resources);
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("lists"),
-            layout: &self.layout,
-            entries: &entries,
-        }));
+        self.bound.bind(gpu, "lists", &self.layout, &entries);
     }
 
     /// The layout.
@@ -77,6 +72,6 @@ impl ListsBindings {
 
     /// The bind group; `None` before the first [`bind`](Self::bind).
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bind_group.as_ref()
+        self.bound.get()
     }
 }

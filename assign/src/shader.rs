@@ -6,7 +6,7 @@ use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
 use crate::{
     AssignError, Gpu, GroupShape, LightKinds, LightReader, Storage, StrategyWesl,
-    compiled::ModuleKey, light_reader::BOUNDS_BOX_WESL,
+    compiled::ModuleKey, hitches::Counted, light_reader::BOUNDS_BOX_WESL,
 };
 
 /// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
@@ -194,14 +194,14 @@ impl<'a> Shader<'a> {
         };
         gpu.compiled.module(key, || {
             let source = self.link(root)?;
-            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-            let module = make(wgpu::ShaderModuleDescriptor {
+            Counted::add(&gpu.counted.modules, 1);
+            let descriptor = wgpu::ShaderModuleDescriptor {
                 label: Some(root),
                 source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
-            match pollster::block_on(scope.pop()) {
-                None => Ok(module),
-                Some(error) => {
+            };
+            match gpu.scoped(wgpu::ErrorFilter::Validation, || make(descriptor)) {
+                (module, None) => Ok(module),
+                (_, Some(error)) => {
                     Err(AssignError::Shader { module: root.to_owned(), reason: error.to_string() })
                 }
             }

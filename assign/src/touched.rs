@@ -21,7 +21,7 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, Lookup, ModelBox,
+    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, LightTraits, Lookup, ModelBox,
     Needs, Passes, SampleDomain, View,
 };
 
@@ -101,6 +101,15 @@ impl Assignment for Touched {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.changes.compile(gpu, lights.kinds)?;
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
