@@ -2,7 +2,8 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu, Groups,
-    LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule, entry, storage_entry, uniform_entry,
+    LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule, entry, storage_entry,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 

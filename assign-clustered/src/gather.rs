@@ -2,8 +2,8 @@
 //! normals.
 
 use assign::{
-    AssignError, Bounds, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LiveGroups, Passes, Shader, UNFILTERED, entry,
-    kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Bounds, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LiveGroups, Passes,
+    Shader, UNFILTERED, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{

@@ -33,8 +33,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, Facing, Frame, Gpu,
-    GroupShape, Groups, LightLists, LightReader, LightTraits, Lookup, Needs, Passes, Storage, StrategyModule,
-    StrategyWesl, entry, uniform_entry,
+    GroupShape, Groups, LightLists, LightReader, LightTraits, Lookup, Needs, Passes, Storage,
+    StrategyModule, StrategyWesl, entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 

@@ -1,9 +1,9 @@
 //! The table of cells of HC: which cells there are, and the pass `bounds` that finds those with visible samples.
 
 use assign::{
-    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LightReader, LiveGroups, Passes, Projection, Readback,
-    Shader, Storage, StrategyWesl, View, entry, kernel, storage_entry, texture, texture_entry,
-    uniform_entry,
+    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LightReader, LiveGroups,
+    Passes, Projection, Readback, Shader, Storage, StrategyWesl, View, entry, kernel,
+    storage_entry, texture, texture_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 

@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule,
-    entry, storage_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes,
+    StrategyModule, entry, storage_entry,
 };
 
 use crate::hash_table::{HASHED_WESL, HashTable, TableUse};

@@ -2,8 +2,8 @@
 //! CPU reads nothing back.
 
 use assign::{
-    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, Passes, Shader, View, entry, kernel, storage_entry,
-    texture, texture_entry, uniform_entry,
+    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, Passes, Shader, View,
+    entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::Vec3;

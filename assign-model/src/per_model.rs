@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, ModelBox, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, ModelBox, Needs,
+    Passes, SampleDomain, StrategyModule, entry, storage_entry,
 };
 use bytemuck::cast_slice;
 

@@ -1,8 +1,8 @@
 //! The pass `bounds`: finds the depth range of each group's samples.
 
 use assign::{
-    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, Passes, Shader, entry, kernel,
-    storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup,
+    Passes, Shader, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{TileDepths, tile_wesl::tile_wesl};

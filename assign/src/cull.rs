@@ -8,14 +8,11 @@ use crate::{
     AssignError, CullSettings, Facing, Frame, FrameBindings, FrameWrites, Gpu, GroupShape, Groups,
     KeptBindGroup, LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes,
     StrategyModule,
-    cull_kernel::{KernelKey, Kernels, Variant},
+    cull_kernel::{KernelKey, Kernels, LISTS_GROUP, Variant},
     entries::{entry, storage_entry, texture, texture_entry},
     limits::{check_limits, storage_buffer_limits},
     touched_groups::{Dispatch, TouchedGroups},
 };
-
-/// Bind group of the lists inside the driver's own kernels.
-pub(crate) const LISTS_GROUP: u32 = 1;
 
 /// Bind group of the kernel's input: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
@@ -248,8 +245,7 @@ impl Culler {
         // Without a hierarchy its levels do not matter.
         let levels = if self.reads_hierarchy() { traits.levels } else { 0 };
         let key = KernelKey { kinds: traits.kinds, levels, sparse };
-        let known = self.kernels.find(key);
-        if let Some(kernel) = known {
+        if let Some(kernel) = self.kernels.find(key) {
             return Ok(kernel);
         }
         let source = self.source_layout(gpu, sparse);

@@ -1,11 +1,12 @@
 //! The culling kernel: what it is compiled for, and the store of a strategy's compiled kernels.
 
 use crate::{
-    AreaBounds, AssignError, CullSettings, Culler, Facing, Gpu, GroupShape, LightKinds,
-    LightSource, LightTraits, Shader, Storage, StrategyWesl,
-    cull::LISTS_GROUP,
-    touched_groups::touched_shader,
+    AreaBounds, AssignError, CullSettings, Facing, Gpu, GroupShape, LightKinds, LightSource,
+    LightTraits, Shader, Storage, StrategyWesl,
 };
+
+/// Bind group of the lists inside the driver's own kernels.
+pub(crate) const LISTS_GROUP: u32 = 1;
 
 /// What the kernel is compiled for, besides the kinds of lights.
 #[derive(Clone, Copy, Debug)]
@@ -116,42 +117,5 @@ impl Variant {
             .flag("masks", self.settings.storage.is_mask())
             .flag("trees", self.settings.storage == Storage::Trees)
             .light_kinds(lights.kinds)
-    }
-}
-
-impl Culler {
-    /// The kernel's linked WGSL for a scene with such lights.
-    pub fn kernel_source<'a>(
-        shape: GroupShape,
-        settings: CullSettings,
-        sparse: bool,
-        wesl: impl Into<StrategyWesl<'a>>,
-        lights: impl Into<LightTraits>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        variant.shader(wesl.into(), lights.into()).link("package::cull")
-    }
-
-    /// The linked WGSL of the kernels that find the groups touched by changed lights.
-    pub fn touched_source<'a>(
-        shape: GroupShape,
-        settings: CullSettings,
-        sparse: bool,
-        wesl: impl Into<StrategyWesl<'a>>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        touched_shader(variant.shader(wesl.into(), LightKinds::default().into()))
-            .link("package::touched")
-    }
-
-    /// The kernel's linked WGSL for live groups that are boxes and know how their surfaces face.
-    pub fn facing_kernel_source<'a>(
-        settings: CullSettings,
-        facing: Facing,
-        wesl: impl Into<StrategyWesl<'a>>,
-        lights: impl Into<LightTraits>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
-        variant.shader(wesl.into(), lights.into()).link("package::cull")
     }
 }

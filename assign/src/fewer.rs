@@ -3,8 +3,8 @@
 use glam::Vec4;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightTraits, LightShape, Lookup,
-    MIN_RANGE_M, Needs, Passes, View,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
+    Lookup, MIN_RANGE_M, Needs, Passes, View,
 };
 
 /// Which lights of a frame have lists if there are too many.

@@ -6,11 +6,7 @@ use std::{
     task::{Context, Poll, Waker},
 };
 
-use crate::{
-    AssignError, Hitches, Mapped,
-    compiled::Compiled,
-    hitches::Counted,
-};
+use crate::{AssignError, Hitches, Mapped, compiled::Compiled, hitches::Counted};
 
 /// A device with its queue and the description of its adapter. Clones share the device.
 #[derive(Clone, Debug)]
@@ -85,7 +81,8 @@ impl Gpu {
         layouts: &[Option<&wgpu::BindGroupLayout>],
         zero_memory: bool,
     ) -> wgpu::ComputePipeline {
-        self.compiled.pipeline(self, module, entry_point, layouts, zero_memory)
+        let device = (&self.device, &*self.counted);
+        self.compiled.pipeline(device, module, entry_point, layouts, zero_memory)
     }
 
     /// A storage buffer of `bytes`, at least 16, which can be copied from and to.

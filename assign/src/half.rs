@@ -13,8 +13,8 @@
 //! brightness, and the edges of tiles show.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightTraits, LightShape, Lookup,
-    MAX_RANGE_M, MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
+    Lookup, MAX_RANGE_M, MIN_RANGE_M, Needs, Passes,
 };
 
 /// A strategy that makes its lists for positions and ranges in half precision. Shading reads those of the frame.

@@ -19,8 +19,8 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, FrameWrites, Gpu, LightBuffer, LightKinds, LightLists, LightTraits, Lookup, ModelBox, Needs, Passes,
-    SampleDomain, Travel, View,
+    AssignError, Assignment, Frame, FrameWrites, Gpu, LightBuffer, LightKinds, LightLists,
+    LightTraits, Lookup, ModelBox, Needs, Passes, SampleDomain, Travel, View,
 };
 
 /// Room for lights that become faster: the next frames may move them so much further than the last one.

@@ -25,7 +25,11 @@ struct Made {
 /// A bound resource.
 #[derive(Clone, Debug)]
 enum Bound {
-    Buffer { buffer: wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize> },
+    Buffer {
+        buffer: wgpu::Buffer,
+        offset: u64,
+        size: Option<wgpu::BufferSize>,
+    },
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
     /// A resource of another kind. It equals nothing, so its group is made each time.
@@ -59,11 +63,7 @@ impl Bound {
 }
 
 impl Made {
-    fn binds(
-        &self,
-        layout: &wgpu::BindGroupLayout,
-        entries: &[wgpu::BindGroupEntry<'_>],
-    ) -> bool {
+    fn binds(&self, layout: &wgpu::BindGroupLayout, entries: &[wgpu::BindGroupEntry<'_>]) -> bool {
         let same = |((binding, bound), entry): (&(u32, Bound), &wgpu::BindGroupEntry<'_>)| {
             *binding == entry.binding && bound.is(&entry.resource)
         };

@@ -31,6 +31,7 @@ pub mod conformance;
 mod cull;
 mod cull_kernel;
 mod cull_settings;
+mod cull_source;
 mod emitter;
 mod entries;
 mod error;

@@ -2,6 +2,7 @@
 //! that were omitted.
 
 mod decode;
+mod extent;
 mod given;
 mod gpu_lights;
 mod living;
@@ -12,18 +13,17 @@ mod wide;
 use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
-use glam::Vec3;
 
 use crate::{
     AssignError, Gpu, Light, LightKinds, LightOrder, LightTraits, Passes, events,
     light_nodes::{LightNode, NodeLevels, nodes},
 };
-use given::{Given, check_count};
 pub(crate) use given::Records;
+use given::{Given, check_count};
 pub use given::{MAX_LIGHTS, RejectedLight};
 pub use gpu_lights::GpuLights;
+use living::Living;
 pub use living::SlotCounts;
-use living::{Living, Source};
 pub use travel::Travel;
 use wide::WideLights;
 
@@ -332,7 +332,8 @@ impl LightBuffer {
         buffers.into_iter().map(wgpu::Buffer::size).sum()
     }
 
-    /// The faulty lights of the last [`update`](Self::update). Lights of intensity 0 are not faulty.
+    /// The lights that the last [`update`](Self::update) rejected: faulty ones, and without [kept
+    /// indices](Self::keep_indices) also those of intensity 0.
     pub fn rejected(&self) -> &[RejectedLight] {
         &self.given.rejected
     }
@@ -357,25 +358,6 @@ impl LightBuffer {
         let living =
             self.living.as_ref().and_then(Living::buffers).map(|(sorter, _)| sorter.capacity());
         living.or(self.wide.as_ref().map(WideLights::capacity)).unwrap_or_else(|| self.count())
-    }
-
-    /// World-space box around all supports, metres; `None` without lights. For lights from the GPU
-    /// it is the stated box, extended by the largest range.
-    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        match self.living.as_ref().and_then(Living::source) {
-            Some(Source::Gpu { bounds: (low, high), radius_max_m, .. }) => {
-                Some((*low - *radius_max_m, *high + *radius_max_m))
-            }
-            _ => self.given.bounds,
-        }
-    }
-
-    /// World-space box around all positions, metres, without the ranges; `None` without lights.
-    pub fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
-        match self.living.as_ref().and_then(Living::source) {
-            Some(Source::Gpu { bounds, .. }) => Some(*bounds),
-            _ => self.given.position_bounds,
-        }
     }
 
     /// The spheres: `array<LightSphere>`.

@@ -26,8 +26,8 @@ pub enum LightFault {
 }
 
 impl LightFault {
-    /// What [`Light::check`](crate::Light::check) says of a light of intensity 0. Such a light lights nothing, and is not
-    /// reported as faulty.
+    /// What [`Light::check`](crate::Light::check) says of a light of intensity 0, which lights nothing. A
+    /// [`LightBuffer`](crate::LightBuffer) that keeps indices does not count it as faulty.
     pub const DARK: Self =
         Self::OutOfRange { field: "intensity", value: 0.0, accepted: "above 0 in some channel" };
 }

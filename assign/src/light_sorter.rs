@@ -87,7 +87,11 @@ impl LightSorter {
     }
 
     /// Compiles kernels for other kinds of lights than those of the frame.
-    pub(crate) fn compile_ahead(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+    pub(crate) fn compile_ahead(
+        &mut self,
+        gpu: &Gpu,
+        kinds: LightKinds,
+    ) -> Result<(), AssignError> {
         self.boxes.find(gpu, kinds).map(|_| ())
     }
 

@@ -1,6 +1,9 @@
 //! Reuse of lists over several frames: the `update` axis.
 
-use crate::{AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes, SampleDomain};
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
+    SampleDomain,
+};
 
 /// A strategy that makes its lists only every `frames` frames.
 ///

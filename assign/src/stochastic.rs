@@ -32,8 +32,8 @@
 //! - Area lights keep their ranges.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightTraits, LightShape, Lookup,
-    MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
+    Lookup, MIN_RANGE_M, Needs, Passes,
 };
 
 /// A strategy that makes its lists for random ranges. Shading must know the threshold, and [`Frame::seed`].

@@ -17,8 +17,8 @@
 //! renderer, where an atomic costs less than the order that it gives up.
 
 use crate::{
-    AssignError, Assignment, Frame, FrameBindings, Gpu, LightLists, LightTraits, ListsBindings, Lookup, Needs,
-    Passes, Shader, Storage, entries::uniform_entry, entry, kernel,
+    AssignError, Assignment, Frame, FrameBindings, Gpu, LightLists, LightTraits, ListsBindings,
+    Lookup, Needs, Passes, Shader, Storage, entries::uniform_entry, entry, kernel,
 };
 
 /// Bind group of the lists in the kernel.

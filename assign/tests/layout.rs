@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use assign::{
-    CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightKinds, LightList,
-    LightNode, LightSource, LightSphere, ViewUniform,
+    CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightKinds, LightList, LightNode,
+    LightSource, LightSphere, ViewUniform,
     conformance::{LinkedModule, StructLayout},
     struct_layout,
 };

@@ -2,7 +2,8 @@
 
 use assign::{
     AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, ListsBindings, Lookup, Needs,
-    Passes, SampleDomain, StrategyModule, check_limits, entry, storage_buffer_limits, uniform_entry,
+    Passes, SampleDomain, StrategyModule, check_limits, entry, storage_buffer_limits,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 

@@ -1,8 +1,8 @@
 //! The passes of HG: what they bind, and the order in which they run.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, KeptBindGroup, LightKinds, LightLists, ListsBindings, Passes,
-    SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Frame, FrameBindings, Gpu, KeptBindGroup, LightKinds, LightLists, ListsBindings,
+    Passes, SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use super::{

@@ -4,8 +4,8 @@ use bytemuck::bytes_of;
 
 pub use super::fault::Fault;
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightTraits, LightNode, LightShape,
-    Lookup, Needs, Passes, Shader, StrategyModule,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightNode, LightShape,
+    LightTraits, Lookup, Needs, Passes, Shader, StrategyModule,
     kernel::{self, Slot},
 };
 

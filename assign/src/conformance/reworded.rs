@@ -1,8 +1,8 @@
 //! Negative controls of a strategy's own shader: the same strategy with other WESL.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule,
-    StrategyWesl,
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
+    StrategyModule, StrategyWesl,
 };
 
 /// A strategy whose look-up has other text, to plant faults in it.

@@ -42,14 +42,12 @@ impl Given {
         let mut rejected = Vec::new();
         for (index, light) in all.iter().enumerate() {
             let fault = light.check().err();
-            let is_kept = match fault {
-                None => true,
-                Some(fault) if fault == LightFault::DARK => keeps_indices,
-                Some(fault) => {
-                    rejected.push(RejectedLight { index, fault });
-                    keeps_indices
-                }
-            };
+            // Where indices stay, a dark light is in nobody's way.
+            if let Some(fault) = fault.filter(|fault| !keeps_indices || *fault != LightFault::DARK)
+            {
+                rejected.push(RejectedLight { index, fault });
+            }
+            let is_kept = keeps_indices || fault.is_none();
             if is_kept {
                 lights.push(*light);
                 indices.push(index as u32);

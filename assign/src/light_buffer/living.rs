@@ -204,7 +204,11 @@ impl Living {
     }
 
     /// Compiles kernels for other kinds of lights than those of the frame.
-    pub(super) fn compile_ahead(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+    pub(super) fn compile_ahead(
+        &mut self,
+        gpu: &Gpu,
+        kinds: LightKinds,
+    ) -> Result<(), AssignError> {
         self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kinds))
     }
 

@@ -55,7 +55,18 @@ impl BoxPass {
         let uniform = gpu.uniform("light order", size_of::<OrderUniform>() as u64);
         let frame = KeptBindGroup::default();
         let known = vec![kernels.clone()];
-        Ok(Self { capacity, levels, kernels, known, spheres, emissions, nodes, uniform, frame, boxes })
+        Ok(Self {
+            capacity,
+            levels,
+            kernels,
+            known,
+            spheres,
+            emissions,
+            nodes,
+            uniform,
+            frame,
+            boxes,
+        })
     }
 
     /// Has frames copy lights of some kinds from the given ones. Compiles the kernels the first time.
