@@ -161,7 +161,7 @@ impl Draw {
             })
         })?;
         let layout = kernel::pipeline_layout(gpu, &[&read_layout, &write_layout]);
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        let pipeline = gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("draw samples"),
             layout: Some(&layout),
             vertex: wgpu::VertexState {

@@ -81,7 +81,7 @@ impl DeepImages {
     /// Sizes the buffers for a frame, grows them to what earlier frames asked for, and binds the
     /// triangles.
     pub fn prepare(&mut self, gpu: &Gpu, triangles: &Triangles<'_>) -> Result<(), AssignError> {
-        self.readback.poll(gpu);
+        self.readback.poll();
         let mut space = ImagesUniform::new(&self.settings, triangles)?;
         let asked = self.readback.latest().unwrap_or_default();
         let grown = self.buffers.prepare(gpu, &self.settings, triangles.count, asked)?;
@@ -192,7 +192,7 @@ impl DeepImages {
                 encoder.copy_buffer_to_buffer(from, ListSort::LONGEST_AT, to, LONGEST_AT, 4);
             }
         }
-        self.readback.record(passes.encoder(), &self.buffers.header);
+        self.readback.record(passes.encoder(), &self.buffers.header, 0);
     }
 
     fn triangle_groups(&self) -> u32 {

@@ -2,7 +2,8 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu, Groups,
-    LightLists, Lookup, Needs, Passes, StrategyModule, entry, storage_entry, uniform_entry,
+    LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule, entry, storage_entry,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -44,19 +45,13 @@ impl Clustered {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] for an option out of its range, and [`AssignError::Unsupported`] for options that
-    /// exclude each other.
+    /// [`AssignError::Parameter`] for an option out of its range, [`AssignError::Unsupported`] for options that
+    /// exclude each other, and [`AssignError::Limit`] on a device with less than the
+    /// [required limits](Self::required_limits).
     pub fn with_options(gpu: &Gpu, options: ClusterOptions) -> Result<Self, AssignError> {
         options.check()?;
-        let ClusterOptions { bounds, normals, settings, .. } = options;
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-        let mut bindings = vec![uniform_entry(FROXELS_BINDING, stages)];
-        if bounds == Bounds::Explicit {
-            bindings.push(storage_entry(MARKS_BINDING, stages, true));
-        }
-        if normals.is_some() {
-            bindings.push(uniform_entry(BINS_BINDING, stages));
-        }
+        let ClusterOptions { bounds, settings, .. } = options;
+        let bindings = bindings(&options);
         let sparse = options.occupancy.is_sparse();
         let reads_samples = sparse || bounds == Bounds::Explicit;
         Ok(Self {
@@ -83,6 +78,35 @@ impl Clustered {
             )?,
         })
     }
+
+    /// What the strategy needs of a device for such options.
+    pub fn required_limits(options: &ClusterOptions) -> wgpu::Limits {
+        Culler::required_limits(&bindings(options), options.occupancy.is_sparse(), options.settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::with_options(gpu, self.options)?;
+        view.culler.share(&self.culler);
+        Ok(view)
+    }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings(options: &ClusterOptions) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    let mut bindings = vec![uniform_entry(FROXELS_BINDING, stages)];
+    if options.bounds == Bounds::Explicit {
+        bindings.push(storage_entry(MARKS_BINDING, stages, true));
+    }
+    if options.normals.is_some() {
+        bindings.push(uniform_entry(BINS_BINDING, stages));
+    }
+    bindings
 }
 
 impl Assignment for Clustered {
@@ -118,6 +142,14 @@ impl Assignment for Clustered {
         self.options.reach.unwrap_or(1.0)
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut froxels = FroxelsUniform::new(
@@ -148,7 +180,8 @@ impl Assignment for Clustered {
             froxels.surfaces_only = 1;
             froxels.specular_reach = self.options.reach.unwrap_or(1.0);
             let bins = self.options.normals.is_some().then_some(&self.bins);
-            gather.prepare(gpu, frame, images, (&froxels, (&self.froxels, bins)), count)?;
+            let writes = self.culler.writes_mut();
+            gather.prepare(gpu, frame, images, (&froxels, (&self.froxels, bins)), count, writes)?;
             if self.options.occupancy.is_sparse() {
                 groups = Groups::Live { count, live: gather.live() };
             }
@@ -156,10 +189,10 @@ impl Assignment for Clustered {
                 resources.push(entry(MARKS_BINDING, gather.marks()));
             }
         }
-        gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
+        self.culler.writes_mut().write(&self.froxels, 0, bytes_of(&froxels))?;
         if self.options.normals.is_some() {
             let bins = NormalBinsUniform::new(self.options.normals, self.options.cut);
-            gpu.queue.write_buffer(&self.bins, 0, bytes_of(&bins));
+            self.culler.writes_mut().write(&self.bins, 0, bytes_of(&bins))?;
             resources.push(entry(BINS_BINDING, &self.bins));
         }
         self.culler.prepare(gpu, frame, groups, &resources)
@@ -169,6 +202,7 @@ impl Assignment for Clustered {
         if let Some(gather) = &self.gather
             && frame.changes.is_none()
         {
+            self.culler.record_writes(passes);
             gather.record(passes);
         }
         self.culler.record(passes);

@@ -2,8 +2,8 @@
 //! normals.
 
 use assign::{
-    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, UNFILTERED, entry,
-    kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Bounds, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LiveGroups, Passes,
+    Shader, UNFILTERED, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{
@@ -31,8 +31,8 @@ pub(crate) struct Gather {
     words: u64,
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
-    live_bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
+    bound_live: KeptBindGroup,
     live_layout: wgpu::BindGroupLayout,
     clear: wgpu::ComputePipeline,
     gather: wgpu::ComputePipeline,
@@ -83,8 +83,8 @@ impl Gather {
             words: if has_marks { marks_words(options).into() } else { 0 },
             frame,
             layout,
-            bind_group: None,
-            live_bind_group: None,
+            bound: KeptBindGroup::default(),
+            bound_live: KeptBindGroup::default(),
             live_layout,
             clear,
             gather,
@@ -105,8 +105,9 @@ impl Gather {
         images: Images<'_>,
         (froxels, uniforms): (&FroxelsUniform, (&wgpu::Buffer, Option<&wgpu::Buffer>)),
         count: u32,
+        writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, writes)?;
         let marks = u64::from(count) * self.words;
         if self.marks.size() < marks * 4 {
             self.marks = gpu.storage("cluster marks", marks * 4)?;
@@ -128,9 +129,9 @@ impl Gather {
         entries.extend(images.normals.map(|view| texture(2, view)));
         entries.extend(uniforms.1.map(|bins| entry(BINS_BINDING, bins)));
         entries.extend(images.base_color.map(|view| texture(3, view)));
-        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
-        let live = [self.live.buffer()];
-        self.live_bind_group = Some(kernel::bind_buffers(gpu, &self.live_layout, &live));
+        self.bound.bind(gpu, "gather", &self.layout, &entries);
+        let live = [entry(0, self.live.buffer())];
+        self.bound_live.bind(gpu, "live groups", &self.live_layout, &live);
         Ok(())
     }
 
@@ -138,8 +139,8 @@ impl Gather {
     pub(crate) fn record(&self, passes: &mut dyn Passes) {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(GATHER_GROUP, self.bind_group.as_ref(), &[]);
-            pass.set_bind_group(LIVE_GROUP, self.live_bind_group.as_ref(), &[]);
+            pass.set_bind_group(GATHER_GROUP, self.bound.get(), &[]);
+            pass.set_bind_group(LIVE_GROUP, self.bound_live.get(), &[]);
             pass.set_pipeline(&self.clear);
             pass.dispatch_workgroups(self.clear_workgroups, 1, 1);
             pass.set_pipeline(&self.gather);

@@ -33,8 +33,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, Facing, Frame, Gpu,
-    GroupShape, Groups, LightLists, LightReader, Lookup, Needs, Passes, Storage, StrategyModule,
-    StrategyWesl, entry, uniform_entry,
+    GroupShape, Groups, LightLists, LightReader, LightTraits, Lookup, Needs, Passes, Storage,
+    StrategyModule, StrategyWesl, entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -68,7 +68,6 @@ impl ZBins {
     pub fn new(gpu: &Gpu, size: FroxelSize, settings: CullSettings) -> Result<Self, AssignError> {
         size.check()?;
         let settings = CullSettings { storage: Storage::Masks, ..settings };
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             size,
             slices: Slices::default(),
@@ -85,7 +84,7 @@ impl ZBins {
                     // SAFETY: the modules have no loop.
                     #[allow(unsafe_code, reason = "they have no loop")]
                     module: unsafe { StrategyModule::new(Z_BINS_WESL) },
-                    bindings: &[uniform_entry(FROXELS_BINDING, stages)],
+                    bindings: &bindings(),
                 },
             )?,
         })
@@ -103,6 +102,28 @@ impl ZBins {
         slices.check(self.size.slices)?;
         Ok(Self { slices, ..self })
     }
+
+    /// What the strategy needs of a device with such settings.
+    pub fn required_limits(settings: CullSettings) -> wgpu::Limits {
+        Culler::required_limits(&bindings(), false, settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self { slices: self.slices, ..Self::new(gpu, self.size, self.settings)? };
+        view.culler.share(&self.culler);
+        Ok(view)
+    }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings() -> [wgpu::BindGroupLayoutEntry; 1] {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    [uniform_entry(FROXELS_BINDING, stages)]
 }
 
 impl Assignment for ZBins {
@@ -120,11 +141,19 @@ impl Assignment for ZBins {
         true
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let froxels =
             FroxelsUniform::new(self.size, self.slices, frame.view, frame.light_bounds())?;
-        gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
+        self.culler.writes_mut().write(&self.froxels, 0, bytes_of(&froxels))?;
         let [tiles_x, tiles_y, slices] = froxels.counts;
         self.culler.prepare(
             gpu,

@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
-    entry, uniform_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes,
+    StrategyModule, entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 use glam::Vec3;
@@ -35,7 +35,6 @@ impl Grid {
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
         counts.check()?;
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             counts,
             grid_box,
@@ -56,10 +55,26 @@ impl Grid {
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(GRID_WESL) },
-                    bindings: &[uniform_entry(FIRST_STRATEGY_BINDING, stages)],
+                    bindings: &bindings(),
                 },
             )?,
         })
+    }
+
+    /// What the strategy needs of a device with such settings.
+    pub fn required_limits(settings: CullSettings) -> wgpu::Limits {
+        Culler::required_limits(&bindings(), false, settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu, self.counts, self.grid_box, self.settings)?;
+        view.culler.share(&self.culler);
+        Ok(view)
     }
 
     /// The cells that the CPU makes. Without lights they divide a unit box.
@@ -100,14 +115,21 @@ impl Grid {
         let id = self.id();
         let Some(visible) = &mut self.visible else {
             let cells = self.cells(frame)?;
-            gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
+            self.culler.writes_mut().write(&self.cells, 0, bytes_of(&cells))?;
             return Ok(cells.group_count());
         };
         let depth = frame.surface_depth(&id)?;
         let lights = frame.light_bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
-        visible.prepare(gpu, frame, depth, AskedCells::new(self.counts, lights))?;
+        let asked = AskedCells::new(self.counts, lights);
+        visible.prepare(gpu, frame, depth, asked, self.culler.writes_mut())?;
         Ok(self.counts.0.iter().product())
     }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings() -> [wgpu::BindGroupLayoutEntry; 1] {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    [uniform_entry(FIRST_STRATEGY_BINDING, stages)]
 }
 
 impl Assignment for Grid {
@@ -135,6 +157,14 @@ impl Assignment for Grid {
         true
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let count = self.prepare_cells(gpu, frame)?;
@@ -150,6 +180,7 @@ impl Assignment for Grid {
         if let Some(visible) = &self.visible
             && frame.changes.is_none()
         {
+            self.culler.record_writes(passes);
             visible.record(frame.view, &self.cells, passes);
         }
         self.culler.record(passes);

@@ -1,9 +1,9 @@
 //! The table of cells of HC: which cells there are, and the pass `bounds` that finds those with visible samples.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, LightReader, LiveGroups, Passes, Projection, Readback,
-    Shader, Storage, StrategyWesl, View, entry, kernel, storage_entry, texture, texture_entry,
-    uniform_entry,
+    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LightReader, LiveGroups,
+    Passes, Projection, Readback, Shader, Storage, StrategyWesl, View, entry, kernel,
+    storage_entry, texture, texture_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 
@@ -135,7 +135,8 @@ pub(crate) struct HashTable {
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
     live_layout: wgpu::BindGroupLayout,
-    bind_groups: Option<[wgpu::BindGroup; 2]>,
+    bound: KeptBindGroup,
+    bound_live: KeptBindGroup,
     clear: wgpu::ComputePipeline,
     fill: wgpu::ComputePipeline,
     table: wgpu::Buffer,
@@ -173,7 +174,8 @@ impl HashTable {
             frame,
             layout,
             live_layout,
-            bind_groups: None,
+            bound: KeptBindGroup::default(),
+            bound_live: KeptBindGroup::default(),
             clear,
             fill,
             table: gpu.storage("cell table", 0)?,
@@ -197,18 +199,19 @@ impl HashTable {
         gpu: &Gpu,
         frame: &Frame<'_>,
         depth: &wgpu::TextureView,
+        writes: &mut FrameWrites,
     ) -> Result<u32, AssignError> {
-        self.readback.poll(gpu);
+        self.readback.poll();
         if frame.changes.is_some() {
             return Ok(self.slots);
         }
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, writes)?;
         let needed = self.readback.latest().map_or(0, TableUse::needed);
         // It does not shrink, so that a moving camera does not resize it in every frame.
         let wanted = slots_of(self.cell_px, frame.view).max(needed).max(self.slots);
         self.slots = wanted.min(self.most_slots);
         let cells = HashCellsUniform::new(self.cell_px, frame.view, self.slots);
-        gpu.queue.write_buffer(&self.asked, 0, bytes_of(&cells));
+        writes.write(&self.asked, 0, bytes_of(&cells))?;
         let bytes = size_of::<HashCellsUniform>() as u64 + u64::from(self.slots) * 4;
         if self.table.size() < bytes {
             self.table = gpu.storage("cell table", bytes)?;
@@ -220,32 +223,35 @@ impl HashTable {
             entry(2, &self.asked),
             entry(3, &self.table_use),
         ];
-        self.bind_groups = Some([
-            kernel::bind_entries(gpu, &self.layout, &entries),
-            kernel::bind_buffers(gpu, &self.live_layout, &[self.live.buffer()]),
-        ]);
+        self.bound.bind(gpu, "cell table", &self.layout, &entries);
+        let live = [entry(0, self.live.buffer())];
+        self.bound_live.bind(gpu, "live groups", &self.live_layout, &live);
         Ok(self.slots)
     }
 
     /// Records the pass `bounds`: inside the clock.
     pub(crate) fn record(&mut self, view: &View, passes: &mut dyn Passes) {
-        let Some([table, live]) = &self.bind_groups else { return };
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(FILL_GROUP, table, &[]);
-            pass.set_bind_group(LIVE_GROUP, live, &[]);
+            pass.set_bind_group(FILL_GROUP, self.bound.get(), &[]);
+            pass.set_bind_group(LIVE_GROUP, self.bound_live.get(), &[]);
             pass.set_pipeline(&self.clear);
             pass.dispatch_workgroups(kernel::workgroups(self.slots.into(), CLEARED), 1, 1);
             pass.set_pipeline(&self.fill);
             let [across, down] = surface::blocks(view);
             pass.dispatch_workgroups(across, down, 1);
         });
-        self.readback.record(passes.encoder(), &self.table_use);
+        self.readback.record(passes.encoder(), &self.table_use, 0);
     }
 
     /// Caps the slots of the table.
     pub(crate) fn limit(&mut self, slots: u32) {
         self.most_slots = slots.clamp(1, SLOTS.1).next_power_of_two();
+    }
+
+    /// Caps the slots as those of another table.
+    pub(crate) fn limit_as(&mut self, other: &Self) {
+        self.most_slots = other.most_slots;
     }
 
     /// How full the table was, in the newest frame that has arrived.

@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
-    entry, storage_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes,
+    StrategyModule, entry, storage_entry,
 };
 
 use crate::hash_table::{HASHED_WESL, HashTable, TableUse};
@@ -35,7 +35,6 @@ impl HashedCells {
                 accepted: format!("1 to {MAX_CELL_PX} pixels"),
             });
         }
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             cell_px,
             settings,
@@ -51,10 +50,27 @@ impl HashedCells {
                     // SAFETY: its loop counts up to a constant.
                     #[allow(unsafe_code, reason = "its loop ends")]
                     module: unsafe { StrategyModule::new(HASHED_WESL) },
-                    bindings: &[storage_entry(FIRST_STRATEGY_BINDING, stages, true)],
+                    bindings: &bindings(),
                 },
             )?,
         })
+    }
+
+    /// What the strategy needs of a device with such settings.
+    pub fn required_limits(settings: CullSettings) -> wgpu::Limits {
+        Culler::required_limits(&bindings(), true, settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu, self.cell_px, self.settings)?;
+        view.table.limit_as(&self.table);
+        view.culler.share(&self.culler);
+        Ok(view)
     }
 
     /// Caps the table at a power of two of at least `slots`, for tests of full tables and for tight memory
@@ -67,6 +83,12 @@ impl HashedCells {
     pub fn table_use(&self) -> Option<TableUse> {
         self.table.table_use()
     }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings() -> [wgpu::BindGroupLayoutEntry; 1] {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    [storage_entry(FIRST_STRATEGY_BINDING, stages, true)]
 }
 
 impl Assignment for HashedCells {
@@ -82,10 +104,18 @@ impl Assignment for HashedCells {
         true
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let depth = frame.surface_depth(&self.id())?;
-        let count = self.table.prepare(gpu, frame, depth)?;
+        let count = self.table.prepare(gpu, frame, depth, self.culler.writes_mut())?;
         self.culler.prepare(
             gpu,
             frame,
@@ -96,6 +126,7 @@ impl Assignment for HashedCells {
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         if frame.changes.is_none() {
+            self.culler.record_writes(passes);
             self.table.record(frame.view, passes);
         } else if self.table.wants_growth() {
             // The next frame fills a larger table.

@@ -2,8 +2,8 @@
 //! CPU reads nothing back.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, Passes, Shader, View, entry, kernel, storage_entry,
-    texture, texture_entry, uniform_entry,
+    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, Passes, Shader, View,
+    entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::Vec3;
@@ -53,7 +53,7 @@ impl AskedCells {
 pub(crate) struct VisibleBox {
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
     /// Kernels in their order.
     clear: wgpu::ComputePipeline,
     find: wgpu::ComputePipeline,
@@ -85,7 +85,7 @@ impl VisibleBox {
         Ok(Self {
             frame,
             layout,
-            bind_group: None,
+            bound: KeptBindGroup::default(),
             clear,
             find,
             cut,
@@ -102,12 +102,13 @@ impl VisibleBox {
         frame: &Frame<'_>,
         depth: &wgpu::TextureView,
         asked: AskedCells,
+        writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
-        self.frame.update(gpu, frame)?;
-        gpu.queue.write_buffer(&self.asked, 0, bytes_of(&asked));
+        self.frame.update_in(gpu, frame, writes)?;
+        writes.write(&self.asked, 0, bytes_of(&asked))?;
         let entries =
             [texture(0, depth), entry(1, &self.found), entry(2, &self.asked), entry(3, &self.made)];
-        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
+        self.bound.bind(gpu, "visible box", &self.layout, &entries);
         Ok(())
     }
 
@@ -115,7 +116,7 @@ impl VisibleBox {
     pub(crate) fn record(&self, view: &View, cells: &wgpu::Buffer, passes: &mut dyn Passes) {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(BOUNDS_GROUP, self.bind_group.as_ref(), &[]);
+            pass.set_bind_group(BOUNDS_GROUP, self.bound.get(), &[]);
             pass.set_pipeline(&self.clear);
             pass.dispatch_workgroups(1, 1, 1);
             pass.set_pipeline(&self.find);

@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, ModelBox, Needs,
+    Passes, SampleDomain, StrategyModule, entry, storage_entry,
 };
 use bytemuck::cast_slice;
 
@@ -40,7 +40,6 @@ impl PerModel {
                 accepted: "0.001 to 1000000 m".into(),
             });
         }
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             limit_m,
             settings,
@@ -59,16 +58,30 @@ impl PerModel {
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(MODELS_WESL) },
-                    bindings: &[
-                        storage_entry(FIRST_STRATEGY_BINDING, stages, true),
-                        storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true),
-                    ],
+                    bindings: &bindings(),
                 },
             )?,
         })
     }
 
-    /// Cuts the models and uploads the parts, unless the models are the last frame's.
+    /// What the strategy needs of a device with such settings.
+    pub fn required_limits(settings: CullSettings) -> wgpu::Limits {
+        Culler::required_limits(&bindings(), false, settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu, self.limit_m, self.settings)?;
+        view.culler.share(&self.culler);
+        Ok(view)
+    }
+
+    /// Cuts the models and uploads the parts, unless the models are the last frame's. Other models get other buffers,
+    /// because commands that are not submitted yet may read the old ones.
     fn upload(&mut self, gpu: &Gpu, boxes: &[ModelBox]) -> Result<(), AssignError> {
         if self.boxes.as_deref() == Some(boxes) {
             return Ok(());
@@ -76,18 +89,23 @@ impl PerModel {
         let parts = Parts::new(boxes, self.limit_m)?;
         let (models, of_group): (&[u8], &[u8]) =
             (cast_slice(&parts.models), cast_slice(&parts.model_of_group));
-        if self.models.size() < models.len() as u64 {
-            self.models = gpu.storage("models", models.len() as u64)?;
-        }
-        if self.model_of_group.size() < of_group.len() as u64 {
-            self.model_of_group = gpu.storage("model of group", of_group.len() as u64)?;
-        }
+        let buffers = [
+            gpu.storage("models", models.len().max(size_of::<ModelRecord>()) as u64)?,
+            gpu.storage("model of group", of_group.len() as u64)?,
+        ];
+        [self.models, self.model_of_group] = buffers;
         gpu.queue.write_buffer(&self.models, 0, models);
         gpu.queue.write_buffer(&self.model_of_group, 0, of_group);
         self.group_count = parts.model_of_group.len() as u32;
         self.boxes = Some(boxes.to_vec());
         Ok(())
     }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings() -> [wgpu::BindGroupLayoutEntry; 2] {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    [0, 1].map(|place| storage_entry(FIRST_STRATEGY_BINDING + place, stages, true))
 }
 
 impl Assignment for PerModel {
@@ -107,6 +125,14 @@ impl Assignment for PerModel {
 
     fn updates_groups(&self) -> bool {
         true
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

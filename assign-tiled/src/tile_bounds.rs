@@ -1,8 +1,8 @@
 //! The pass `bounds`: finds the depth range of each group's samples.
 
 use assign::{
-    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry, kernel,
-    storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup,
+    Passes, Shader, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{TileDepths, tile_wesl::tile_wesl};
@@ -15,7 +15,7 @@ const BOUNDS_GROUP: u32 = 1;
 pub(crate) struct TileBounds {
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
     pipeline: wgpu::ComputePipeline,
     depths: wgpu::Buffer,
     /// The depth slices of each tile that hold samples: `array<u32>`.
@@ -50,7 +50,8 @@ impl TileBounds {
         let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame.layout(), &layout]);
         let depths = gpu.storage("tile depths", 0)?;
         let lists = tile_depths.lists();
-        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0], lists, masks })
+        let bound = KeptBindGroup::default();
+        Ok(Self { frame, layout, bound, pipeline, depths, counts: [0, 0], lists, masks })
     }
 
     /// Sizes the buffer for `counts` tiles along x and y, and binds it: outside the clock.
@@ -59,10 +60,10 @@ impl TileBounds {
         gpu: &Gpu,
         frame: &Frame<'_>,
         depth: &wgpu::TextureView,
-        tiles: &wgpu::Buffer,
-        counts: [u32; 2],
+        (tiles, counts): (&wgpu::Buffer, [u32; 2]),
+        writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, writes)?;
         self.counts = counts;
         let bytes = u64::from(counts[0]) * u64::from(counts[1]) * u64::from(self.lists) * 8;
         if self.depths.size() < bytes {
@@ -76,7 +77,7 @@ impl TileBounds {
         let mut entries =
             vec![texture(0, depth), entry(1, &self.depths), entry(FIRST_STRATEGY_BINDING, tiles)];
         entries.extend(self.masks.as_ref().map(|masks| entry(2, masks)));
-        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
+        self.bound.bind(gpu, "tile bounds", &self.layout, &entries);
         Ok(())
     }
 
@@ -84,7 +85,7 @@ impl TileBounds {
     pub(crate) fn record(&self, passes: &mut dyn Passes) {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(BOUNDS_GROUP, self.bind_group.as_ref(), &[]);
+            pass.set_bind_group(BOUNDS_GROUP, self.bound.get(), &[]);
             pass.set_pipeline(&self.pipeline);
             pass.dispatch_workgroups(self.counts[0], self.counts[1], 1);
         });

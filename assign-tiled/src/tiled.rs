@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, SampleDomain,
-    StrategyModule, entry, storage_entry, uniform_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes,
+    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -33,19 +33,10 @@ impl Tiled {
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
         size.check()?;
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-        let tiles = uniform_entry(FIRST_STRATEGY_BINDING, stages);
         let depths = depths.into();
-        let mut bindings = vec![tiles];
         let tile_bounds = match depths {
             TileDepths::Implicit | TileDepths::ExplicitAtOnce => None,
-            _ => {
-                bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true));
-                if depths == TileDepths::Sliced {
-                    bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 2, stages, true));
-                }
-                Some(TileBounds::new(gpu, depths)?)
-            }
+            _ => Some(TileBounds::new(gpu, depths)?),
         };
         Ok(Self {
             size,
@@ -67,7 +58,7 @@ impl Tiled {
                     // SAFETY: the loop over a tile's pixels counts up to their number.
                     #[allow(unsafe_code, reason = "its loop ends")]
                     module: unsafe { StrategyModule::new(tile_wesl(depths)) },
-                    bindings: &bindings,
+                    bindings: &bindings(depths),
                 },
             )?,
         })
@@ -75,10 +66,40 @@ impl Tiled {
 }
 
 impl Tiled {
+    /// What the strategy needs of a device with such depths and settings.
+    pub fn required_limits(depths: TileDepths, settings: CullSettings) -> wgpu::Limits {
+        Culler::required_limits(&bindings(depths), false, settings)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu, self.size, self.depths, self.settings)?;
+        view.culler.share(&self.culler);
+        Ok(view)
+    }
+
     /// Whether the samples in a tile bound it.
     fn is_explicit(&self) -> bool {
         self.depths != TileDepths::Implicit
     }
+}
+
+/// The strategy's resources that culling and the look-up read.
+fn bindings(depths: TileDepths) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+    let mut bindings = vec![uniform_entry(FIRST_STRATEGY_BINDING, stages)];
+    let buffers = match depths {
+        TileDepths::Implicit | TileDepths::ExplicitAtOnce => 0,
+        TileDepths::Sliced => 2,
+        _ => 1,
+    };
+    let buffer = |place| storage_entry(FIRST_STRATEGY_BINDING + place, stages, true);
+    bindings.extend((1..=buffers).map(buffer));
+    bindings
 }
 
 impl Assignment for Tiled {
@@ -97,6 +118,14 @@ impl Assignment for Tiled {
         self.depths != TileDepths::ExplicitAtOnce
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.culler.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut tiles = TilesUniform::new(self.size, frame.view);
@@ -108,11 +137,12 @@ impl Assignment for Tiled {
                 _ => SURFACES_ONLY,
             };
             if let Some(tile_bounds) = &mut self.tile_bounds {
-                tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
+                let writes = self.culler.writes_mut();
+                tile_bounds.prepare(gpu, frame, depth, (&self.tiles, tiles.counts), writes)?;
                 resources.extend(tile_bounds.resources());
             }
         }
-        gpu.queue.write_buffer(&self.tiles, 0, bytes_of(&tiles));
+        self.culler.writes_mut().write(&self.tiles, 0, bytes_of(&tiles))?;
         self.culler.prepare(
             gpu,
             frame,
@@ -125,6 +155,7 @@ impl Assignment for Tiled {
         if let Some(tile_bounds) = &self.tile_bounds
             && frame.changes.is_none()
         {
+            self.culler.record_writes(passes);
             tile_bounds.record(passes);
         }
         self.culler.record(passes);

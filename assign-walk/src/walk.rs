@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, FIRST_STRATEGY_BINDING, Frame, Gpu, LightLists, LightReader,
-    LightSource, ListsBindings, Lookup, Needs, Passes, StrategyModule, StrategyWesl, Team, entry,
-    storage_entry, uniform_entry,
+    LightSource, ListsBindings, Lookup, Needs, Passes, StrategyModule, StrategyWesl, Team,
+    check_limits, entry, storage_buffer_limits, storage_entry, uniform_entry,
 };
 
 /// The WESL of the strategy.
@@ -39,6 +39,7 @@ impl Walk {
             Team::Lane => LightSource::Hierarchy,
         };
         LightReader::Walk { team, source }.check(gpu, id_of(team, source))?;
+        check_limits(gpu, id_of(team, source), &Self::required_limits(team, source))?;
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         let mut bindings = vec![uniform_entry(FIRST_STRATEGY_BINDING, stages)];
         if source == LightSource::Hierarchy {
@@ -51,6 +52,23 @@ impl Walk {
             bindings: ListsBindings::of_look_up(gpu, id_of(team, source), &bindings),
             hierarchy_bytes: 0,
         })
+    }
+
+    /// What the strategy needs of a device. Its look-up reads the lights, the lists and the hierarchy.
+    pub fn required_limits(team: Team, source: LightSource) -> wgpu::Limits {
+        let hierarchy = team == Team::Lane || source == LightSource::Hierarchy;
+        storage_buffer_limits(5 + u32::from(hierarchy))
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu, self.team, self.source)?;
+        view.lists.limit_as(&self.lists);
+        Ok(view)
     }
 }
 
@@ -75,6 +93,10 @@ impl Assignment for Walk {
         false
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let reader = LightReader::Walk { team: self.team, source: self.source };
@@ -90,9 +112,7 @@ impl Assignment for Walk {
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        if let Some(count) = frame.lights.live_count() {
-            self.lists.record_reset(passes.encoder(), Some(count));
-        }
+        self.lists.record_reset(passes.encoder(), frame.lights.live_count());
     }
 
     fn lookup(&self) -> Lookup<'_> {

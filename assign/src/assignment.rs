@@ -1,16 +1,31 @@
 //! The trait that every strategy implements.
 
 use crate::{
-    AssignError, Frame, Gpu, GroupShape, LightKinds, LightLists, ListsBindings, Needs, Passes,
-    Shader, Slots, StrategyModule,
+    AssignError, Frame, Gpu, GroupShape, LightKinds, LightLists, LightTraits, ListsBindings, Needs,
+    Passes, Shader, Slots, StrategyModule,
 };
 
 /// A strategy: groups of view samples, a function from a sample to its group, and a list of
 /// lights for each group.
 ///
-/// A frame runs `prepare`, then `record`; the renderer submits, and shading reads the lists through
-/// [`Lookup`]. Call the next `prepare` after that submission.
-pub trait Assignment {
+/// A frame runs `prepare`, then `record`; shading, recorded after that, reads the lists through [`Lookup`]. The renderer
+/// may submit at once or after further frames: commands of the frame itself upload its parameters
+/// ([`FrameWrites`](crate::FrameWrites)), so the passes and the shading of each frame see its own.
+///
+/// # Several views
+///
+/// One instance has the lists of one view. [`for_view`](Self::for_view) makes an instance for another view: a second
+/// camera, the other half of a split screen, a reflection. Both share pipelines and layouts, so one shading pipeline
+/// serves both, and both may be prepared and recorded in one submission. An instance that is prepared for another view
+/// in each frame is right too, but its lists are overwritten: shade a view before the next one is recorded. A strategy
+/// that keeps lists over frames, such as [`Keep`](crate::Keep), keeps them for one view.
+///
+/// # No hitch
+///
+/// `prepare` and `record` never wait. They compile only for [kinds of lights](LightTraits) that have not come up yet
+/// ([`compile`](Self::compile) does that ahead), and make buffers and bind groups only if something grew or other images
+/// are bound. [`Gpu::hitches`] counts all of this.
+pub trait Assignment: Send + Sync {
     /// The strategy's id with its parameters, named as in the comparison paper: `DC-I/64x64x24`.
     fn id(&self) -> String;
 
@@ -33,6 +48,25 @@ pub trait Assignment {
     /// farther.
     fn specular_reach(&self) -> f32 {
         1.0
+    }
+
+    /// Makes the same strategy for another view. It shares this one's pipelines and layouts, takes the limits of its
+    /// lists, and has buffers of its own.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError>;
+
+    /// Compiles ahead what frames with such lights need: a flickering lamp that is the last spot changes the kinds of
+    /// lights in every frame. Call it while loading, once for each kind that may come up. With a hierarchy it compiles
+    /// for up to `lights.levels` levels. Strategies without kernels for lights have nothing to compile.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Shader`] if a kernel does not link.
+    fn compile(&mut self, _gpu: &Gpu, _lights: LightTraits) -> Result<(), AssignError> {
+        Ok(())
     }
 
     /// Sizes buffers and uploads parameters. No clock counts it. After an error, do not draw the
@@ -135,4 +169,17 @@ impl<'a> Lookup<'a> {
     pub fn bind_entries(&self, first_binding: u32) -> Vec<wgpu::BindGroupEntry<'a>> {
         self.bindings.bind_entries(first_binding)
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Assignment, Gpu, LightBuffer};
+
+    /// A renderer may prepare a frame on one thread and record it on another.
+    const _: () = {
+        const fn is_shared<T: Send + Sync + ?Sized>() {}
+        is_shared::<dyn Assignment>();
+        is_shared::<LightBuffer>();
+        is_shared::<Gpu>();
+    };
 }

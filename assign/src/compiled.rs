@@ -10,7 +10,7 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-use crate::AssignError;
+use crate::{AssignError, hitches::Counted};
 
 /// What a compute pipeline is made from. Two layouts or modules are equal only if they are the same
 /// object, so the store finds a pipeline again only if both come from this store.
@@ -75,13 +75,14 @@ impl Compiled {
     /// The compute pipeline of `entry_point` over bind groups 0, 1, ….
     pub(crate) fn pipeline(
         &self,
-        device: &wgpu::Device,
+        (device, counted): (&wgpu::Device, &Counted),
         module: &wgpu::ShaderModule,
         entry_point: &str,
         layouts: &[Option<&wgpu::BindGroupLayout>],
         zero_memory: bool,
     ) -> wgpu::ComputePipeline {
         let make = || {
+            Counted::add(&counted.pipelines, 1);
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry_point),
                 bind_group_layouts: layouts,

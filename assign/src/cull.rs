@@ -5,15 +5,14 @@
 //! lists.
 
 use crate::{
-    AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
-    Storage, StrategyModule, StrategyWesl,
+    AssignError, CullSettings, Facing, Frame, FrameBindings, FrameWrites, Gpu, GroupShape, Groups,
+    KeptBindGroup, LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes,
+    StrategyModule,
+    cull_kernel::{KernelKey, Kernels, LISTS_GROUP, Variant},
     entries::{entry, storage_entry, texture, texture_entry},
-    touched_groups::{Dispatch, TouchedGroups, touched_shader},
+    limits::{check_limits, storage_buffer_limits},
+    touched_groups::{Dispatch, TouchedGroups},
 };
-
-/// Bind group of the lists inside the driver's own kernels.
-const LISTS_GROUP: u32 = 1;
 
 /// Bind group of the kernel's input: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
@@ -44,11 +43,14 @@ pub struct Culler {
     label: String,
     variant: Variant,
     module: StrategyModule,
-    kernel: Option<Kernel>,
+    kernels: Kernels,
+    /// What the prepared frame runs.
+    kernel: Option<wgpu::ComputePipeline>,
     frame: FrameBindings,
     cull: ListsBindings,
     look_up: ListsBindings,
-    source: Option<Source>,
+    source: KeptBindGroup,
+    dispatch: Dispatch,
     lists: LightLists,
     /// Finds the groups to cull in frames with [`Frame::changes`].
     touched: Option<TouchedGroups>,
@@ -60,83 +62,84 @@ pub struct Culler {
     hierarchy_bytes: u64,
 }
 
-/// What the kernel is compiled for, besides the kinds of lights.
-#[derive(Clone, Copy, Debug)]
-struct Variant {
-    shape: GroupShape,
-    settings: CullSettings,
-    sparse: bool,
-    facing: Facing,
-}
-
-#[derive(Debug)]
-struct Kernel {
-    pipeline: wgpu::ComputePipeline,
-    traits: LightTraits,
-    sparse: bool,
-}
-
-/// The kernel's input, and its workgroups.
-#[derive(Debug)]
-struct Source {
-    bind_group: wgpu::BindGroup,
-    dispatch: Dispatch,
-}
-
-impl Variant {
-    fn check(self, strategy: &str) -> Result<(), AssignError> {
-        if self.facing != Facing::Unknown && self.shape != GroupShape::Box {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: format!("facing {:?} with groups of shape {:?}", self.facing, self.shape),
-                reason: "only groups of shape Box can know normals".into(),
-            });
-        }
-        if self.facing == Facing::SpecularReach && self.settings.storage != Storage::Lists {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: format!("storage {:?} with a specular reach", self.settings.storage),
-                reason: "only plain lists hold lights beyond their range".into(),
-            });
-        }
-        // What the others leave out of lists, they mark in an entry's flags.
-        if !matches!(self.facing, Facing::Unknown | Facing::Horizon)
-            && self.settings.storage.is_mask()
-        {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: "bit masks with a specular cut".into(),
-                reason: "a bit cannot say which terms of a light to leave out".into(),
-            });
-        }
-        Ok(())
-    }
-}
-
 impl Culler {
-    /// Makes the layouts. The first `prepare` makes the pipelines: see [`prepare`](Self::prepare).
+    /// What the driver's kernels need of a device, for a strategy with such read-only resources. A strategy offers it
+    /// for its options, so that a renderer can ask for it before it opens a device.
+    pub fn required_limits(
+        bindings: &[wgpu::BindGroupLayoutEntry],
+        sparse: bool,
+        settings: CullSettings,
+    ) -> wgpu::Limits {
+        let is_storage = |entry: &&wgpu::BindGroupLayoutEntry| {
+            matches!(
+                entry.ty,
+                wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. }
+            )
+        };
+        let strategy = bindings.iter().filter(is_storage).count() as u32;
+        let hierarchy = settings.source == LightSource::Hierarchy;
+        // Three for the lights, records and entries.
+        storage_buffer_limits(5 + strategy + u32::from(sparse) + u32::from(hierarchy))
+    }
+
+    /// Makes the layouts. [`compile`](Self::compile) makes the pipelines, or else the first frame that needs them.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Limit`] on a device with less than the [required limits](Self::required_limits), and
+    /// [`AssignError::Unsupported`] for settings that exclude each other.
     pub fn new(gpu: &Gpu, descriptor: &CullerDescriptor<'_>) -> Result<Self, AssignError> {
         let CullerDescriptor { label, shape, settings, sparse, facing, module, bindings } =
             *descriptor;
         let variant = Variant { shape, settings, sparse, facing };
         variant.check(label)?;
+        check_limits(gpu, label, &Self::required_limits(bindings, sparse, settings))?;
         let reader = module.wesl().reader.of_storage(settings.storage);
         reader.check(gpu, label)?;
         Ok(Self {
             label: label.to_owned(),
             variant,
             module: module.read_by(reader),
+            kernels: Kernels::default(),
             kernel: None,
             frame: FrameBindings::new(gpu),
             cull: ListsBindings::of_kernel(gpu, label, bindings),
             look_up: ListsBindings::of_look_up(gpu, label, bindings),
-            source: None,
+            source: KeptBindGroup::default(),
+            dispatch: Dispatch::Workgroups(0),
             lists: LightLists::stored_as(gpu, settings.storage)?,
             touched: None,
             is_update: false,
             live_count: None,
             hierarchy_bytes: 0,
         })
+    }
+
+    /// Shares the kernels of the same strategy's driver for another view, and takes the limits of its lists.
+    pub fn share(&mut self, other: &Self) {
+        self.kernels = other.kernels.clone();
+        self.lists.limit_as(&other.lists);
+    }
+
+    /// Compiles ahead what frames with such lights need. Without it the first such frame compiles, and is late.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Shader`] if the strategy's module does not link.
+    pub fn compile(&mut self, gpu: &Gpu, traits: LightTraits) -> Result<(), AssignError> {
+        let sparse = self.variant.sparse;
+        let levels = if self.reads_hierarchy() { traits.levels.max(1) } else { 1 };
+        for levels in 1..=levels {
+            let traits = LightTraits { levels, ..traits };
+            self.find_kernel(gpu, traits, sparse)?;
+            if self.lists.leaves_room() {
+                self.find_kernel(gpu, traits, true)?;
+            }
+        }
+        if self.lists.leaves_room() && self.touched.is_none() {
+            self.touched = Some(self.compile_touched(gpu)?);
+        }
+        Ok(())
     }
 
     /// Sizes the lists and binds the strategy's resources. No clock counts it.
@@ -147,17 +150,22 @@ impl Culler {
         groups: Groups<'_>,
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, self.lists.writes_mut())?;
         self.module.wesl().reader.check_lights(gpu, &self.label, frame.lights.count())?;
         self.is_update = frame.changes.is_some();
         if self.is_update {
-            self.lists.prepare_update(gpu, frame.lights);
+            self.lists.prepare_update(frame.lights)?;
         } else {
             self.lists.prepare(gpu, frame.lights, groups.count())?;
         }
         self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
-        let source = match frame.changes {
+        let traits = frame.lights.traits();
+        // An update of all lists is as likely as the first frame that makes only some.
+        if self.lists.leaves_room() {
+            self.compile(gpu, traits)?;
+        }
+        match frame.changes {
             None => self.bind_source(gpu, frame, groups)?,
             Some(changes) => {
                 let mut touched = match self.touched.take() {
@@ -166,32 +174,25 @@ impl Culler {
                 };
                 touched.prepare(gpu, changes, groups)?;
                 let live = touched.groups();
-                let source =
-                    self.bind_source(gpu, frame, Groups::Live { count: groups.count(), live })?;
+                self.bind_source(gpu, frame, Groups::Live { count: groups.count(), live })?;
                 self.touched = Some(touched);
-                source
             }
-        };
-        self.source = Some(source);
-        let sparse = self.variant.sparse || self.is_update;
+        }
         if self.reads_hierarchy() {
             self.hierarchy_bytes = frame.lights.nodes().size();
         }
-        let traits = frame.lights.traits();
-        let fits = |kernel: &Kernel| kernel.traits == traits && kernel.sparse == sparse;
-        if !self.kernel.as_ref().is_some_and(fits) {
-            self.kernel = Some(self.compile(gpu, traits, sparse)?);
-        }
+        let sparse = self.variant.sparse || self.is_update;
+        self.kernel = Some(self.find_kernel(gpu, traits, sparse)?);
         self.live_count = frame.lights.live_count().cloned();
         Ok(())
     }
 
     fn bind_source(
-        &self,
+        &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
         groups: Groups<'_>,
-    ) -> Result<Source, AssignError> {
+    ) -> Result<(), AssignError> {
         let mut entries = Vec::new();
         if let Groups::Live { live, .. } = groups {
             entries.push(entry(0, live.buffer()));
@@ -205,12 +206,9 @@ impl Culler {
             entries.push(texture(2, frame.depth.ok_or_else(missing)?));
         }
         let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("cull source"),
-            layout: &layout,
-            entries: &entries,
-        });
-        Ok(Source { bind_group, dispatch: Dispatch::over(groups) })
+        self.source.bind(gpu, "cull source", &layout, &entries);
+        self.dispatch = Dispatch::over(groups);
+        Ok(())
     }
 
     /// Layout of the kernel's input: the groups if not all are culled, light nodes if there is a hierarchy, the
@@ -232,69 +230,46 @@ impl Culler {
 
     fn compile_touched(&self, gpu: &Gpu) -> Result<TouchedGroups, AssignError> {
         // Changed lights are balls.
-        let shader = kernel_shader(self.variant, self.module.wesl(), LightKinds::default().into());
+        let shader = self.variant.shader(self.module.wesl(), LightKinds::default().into());
         let layouts = [self.frame.layout(), self.cull.layout()];
         TouchedGroups::new(gpu, shader, layouts, self.variant.sparse)
     }
 
-    /// The kernel's linked WGSL for a scene with such lights.
-    pub fn kernel_source<'a>(
-        shape: GroupShape,
-        settings: CullSettings,
+    /// The kernel for lights of such traits. It is compiled once.
+    fn find_kernel(
+        &mut self,
+        gpu: &Gpu,
+        traits: LightTraits,
         sparse: bool,
-        wesl: impl Into<StrategyWesl<'a>>,
-        lights: impl Into<LightTraits>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
-    }
-
-    /// The linked WGSL of the kernels that find the groups touched by changed lights.
-    pub fn touched_source<'a>(
-        shape: GroupShape,
-        settings: CullSettings,
-        sparse: bool,
-        wesl: impl Into<StrategyWesl<'a>>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        touched_shader(kernel_shader(variant, wesl.into(), LightKinds::default().into()))
-            .link("package::touched")
-    }
-
-    /// The kernel's linked WGSL for live groups that are boxes and know how their surfaces face.
-    pub fn facing_kernel_source<'a>(
-        settings: CullSettings,
-        facing: Facing,
-        wesl: impl Into<StrategyWesl<'a>>,
-        lights: impl Into<LightTraits>,
-    ) -> Result<String, AssignError> {
-        let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
-        kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
-    }
-
-    fn compile(&self, gpu: &Gpu, traits: LightTraits, sparse: bool) -> Result<Kernel, AssignError> {
-        let variant = Variant { sparse, ..self.variant };
-        let shader = kernel_shader(variant, self.module.wesl(), traits);
-        // SAFETY: every loop of the driver ends. A loop counts up without wrapping to a fixed
-        // number, at most a buffer's length; or tests the next of finitely many nodes; or clears
-        // one bit of a word per round; or tries to take entries from a pool that only fills up.
-        // Such a try fails only because another lane succeeded, or spuriously a few times at most.
-        // The strategy's author guarantees the same for its module.
-        #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { shader.create_uncounted(gpu, "package::cull") }?;
+    ) -> Result<wgpu::ComputePipeline, AssignError> {
+        // Without a hierarchy its levels do not matter.
+        let levels = if self.reads_hierarchy() { traits.levels } else { 0 };
+        let key = KernelKey { kinds: traits.kinds, levels, sparse };
+        if let Some(kernel) = self.kernels.find(key) {
+            return Ok(kernel);
+        }
         let source = self.source_layout(gpu, sparse);
         let layouts = [Some(self.frame.layout()), Some(self.cull.layout()), Some(&source)];
-        // The kernel writes workgroup memory before it reads it.
-        let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
-        Ok(Kernel { pipeline, traits, sparse })
+        let variant = Variant { sparse, ..self.variant };
+        let kernel = variant.compile(gpu, self.module.wesl(), traits, &layouts)?;
+        self.kernels.insert(key, kernel.clone());
+        Ok(kernel)
+    }
+
+    /// What the strategy uploads for a frame: see [`LightLists::writes_mut`].
+    pub fn writes_mut(&mut self) -> &mut FrameWrites {
+        self.lists.writes_mut()
+    }
+
+    /// Records the frame's writes. A strategy calls it before its own passes, if it has any.
+    pub fn record_writes(&mut self, passes: &mut dyn Passes) {
+        self.lists.record_writes(passes.encoder());
     }
 
     /// Records the pass `cull`, which a clock times, and in frames with [`Frame::changes`] the pass `touch`
     /// before it. Call it after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
-        let (Some(kernel), Some(source)) = (&self.kernel, &self.source) else {
-            return;
-        };
+        let (Some(kernel), Some(source)) = (&self.kernel, self.source.get()) else { return };
         let groups = [self.frame.bind_group(), self.cull.bind_group()];
         match &self.touched {
             Some(touched) if self.is_update => {
@@ -306,9 +281,9 @@ impl Culler {
         passes.compute("cull", &mut |pass| {
             pass.set_bind_group(0, groups[0], &[]);
             pass.set_bind_group(LISTS_GROUP, groups[1], &[]);
-            pass.set_bind_group(SOURCE_GROUP, &source.bind_group, &[]);
-            pass.set_pipeline(&kernel.pipeline);
-            source.dispatch.record(pass);
+            pass.set_bind_group(SOURCE_GROUP, source, &[]);
+            pass.set_pipeline(kernel);
+            self.dispatch.record(pass);
         });
         self.lists.record_readback(passes.encoder());
     }
@@ -347,41 +322,4 @@ impl Culler {
         let touched = self.touched.as_ref().map_or(0, |touched| touched.groups().bytes());
         self.frame.bytes() + self.lists.memory_bytes() + self.hierarchy_bytes + touched
     }
-}
-
-fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTraits) -> Shader<'a> {
-    let tests = variant.settings.tests;
-    let is_hierarchy = variant.settings.source == LightSource::Hierarchy;
-    let levels = if is_hierarchy { lights.levels } else { 0 };
-    Shader::new(LISTS_GROUP)
-        .module("package::cull", include_str!("shaders/cull.wesl"))
-        .module("package::walk", include_str!("shaders/walk.wesl"))
-        .module("package::tree", include_str!("shaders/tree.wesl"))
-        .module("package::terms", include_str!("shaders/terms.wesl"))
-        .module("package::facing", include_str!("shaders/facing.wesl"))
-        .strategy(wesl)
-        .group_bounds(variant.shape)
-        .module("package::gloss", include_str!("shaders/gloss.wesl"))
-        .module("package::reflected", include_str!("shaders/reflected.wesl"))
-        .module("package::group_reach", include_str!("shaders/group_reach.wesl"))
-        .flag("specular_reach", variant.facing == Facing::SpecularReach)
-        .flag("bounds_by_lanes", wesl.finds_bounds_by_lanes())
-        .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
-        .flag("reflected", variant.facing == Facing::ReflectedCone)
-        .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)
-        .flag("gloss", variant.facing == Facing::HorizonAndGloss)
-        .flag("hs", tests.hs)
-        .flag("sat_e", tests.sat_e)
-        .flag("sat_n", tests.sat_n)
-        .flag("sat_p", tests.sat_p)
-        .flag("sat_v", tests.sat_v)
-        .flag("rect", variant.settings.screen_rectangle)
-        .flag("hierarchy", is_hierarchy)
-        .flag("parents", levels > 1)
-        .flag("grandparents", levels > 2)
-        .flag("area_balls", variant.settings.area_bounds == AreaBounds::Ball)
-        .flag("sparse", variant.sparse)
-        .flag("masks", variant.settings.storage.is_mask())
-        .flag("trees", variant.settings.storage == Storage::Trees)
-        .light_kinds(lights.kinds)
 }

@@ -64,6 +64,21 @@ pub enum AssignError {
         /// What is missing.
         missing: &'static str,
     },
+    /// A limit of the device is too small.
+    #[error(
+        "{strategy} needs the limit {limit} of {needs} or more, and the device has {has}: ask for it in `required_limits` \
+         when opening the device"
+    )]
+    Limit {
+        /// The strategy's id.
+        strategy: String,
+        /// The name of the field of `wgpu::Limits`.
+        limit: &'static str,
+        /// What the strategy needs.
+        needs: u64,
+        /// What the device has.
+        has: u64,
+    },
     /// A buffer is larger than the device can bind.
     #[error("{what} needs {bytes} bytes: this device can bind at most {limit}")]
     TooLarge {

@@ -21,6 +21,17 @@ impl Everything {
             bindings: ListsBindings::of_look_up(gpu, "None", &[]),
         })
     }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::new(gpu)?;
+        view.lists.limit_as(&self.lists);
+        Ok(view)
+    }
 }
 
 impl Assignment for Everything {
@@ -36,6 +47,10 @@ impl Assignment for Everything {
         f32::INFINITY
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         self.lists.prepare(gpu, frame.lights, 0)?;
@@ -44,9 +59,7 @@ impl Assignment for Everything {
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        if let Some(count) = frame.lights.live_count() {
-            self.lists.record_reset(passes.encoder(), Some(count));
-        }
+        self.lists.record_reset(passes.encoder(), frame.lights.live_count());
     }
 
     fn lookup(&self) -> Lookup<'_> {

@@ -3,8 +3,8 @@
 use glam::Vec4;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup,
-    MIN_RANGE_M, Needs, Passes, View,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
+    Lookup, MIN_RANGE_M, Needs, Passes, View,
 };
 
 /// Which lights of a frame have lists if there are too many.
@@ -112,6 +112,14 @@ impl Assignment for Fewer {
 
     fn needs(&self) -> Needs {
         self.inner.needs()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.kept, self.most)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -5,7 +5,8 @@ use bytemuck::bytes_of;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightBuffer, LightChanges, LightOrder, ModelBox, View, ViewUniform,
+    AssignError, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges, LightOrder,
+    ModelBox, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
     plain_wgsl::FRAME_BINDINGS,
 };
@@ -250,9 +251,7 @@ impl<'a> Frame<'a> {
 pub struct FrameBindings {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
-    /// The lights' spheres, emissions and shapes.
-    lights: Option<[wgpu::Buffer; 3]>,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
 }
 
 impl FrameBindings {
@@ -266,25 +265,41 @@ impl FrameBindings {
         Self {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
             layout: gpu.bind_group_layout("frame", &entries),
-            lights: None,
-            bind_group: None,
+            bound: KeptBindGroup::default(),
         }
     }
 
-    /// Checks and uploads the view, and binds the lights.
+    /// Checks and uploads the view, and binds the lights. The view takes effect with the next submission, for all that
+    /// it holds: a renderer that draws several views in one submission has one `FrameBindings` per view. The bind group
+    /// stays the same while the lights' buffers do.
     pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        frame.view.check()?;
-        let uniform = ViewUniform { seed: frame.seed, ..frame.view.uniform() };
+        let uniform = view_uniform(frame)?;
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
-        let lights = frame.lights;
-        self.lights =
-            Some([lights.spheres(), lights.emissions(), lights.shapes()].map(Clone::clone));
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &self.layout,
-            entries: &self.bind_entries(0),
-        }));
+        self.bind(gpu, frame.lights);
         Ok(())
+    }
+
+    /// As [`update`](Self::update), but the view takes effect where `writes` are recorded. Strategies use it.
+    pub fn update_in(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        writes: &mut FrameWrites,
+    ) -> Result<(), AssignError> {
+        let uniform = view_uniform(frame)?;
+        writes.write(&self.uniform, 0, bytes_of(&uniform))?;
+        self.bind(gpu, frame.lights);
+        Ok(())
+    }
+
+    fn bind(&mut self, gpu: &Gpu, lights: &LightBuffer) {
+        let entries = [
+            entry(0, &self.uniform),
+            entry(1, lights.spheres()),
+            entry(2, lights.emissions()),
+            entry(3, lights.shapes()),
+        ];
+        self.bound.bind(gpu, "frame", &self.layout, &entries);
     }
 
     /// Bytes of the view's buffer, without the lights.
@@ -299,7 +314,7 @@ impl FrameBindings {
 
     /// The bind group; `None` before the first [`update`](Self::update).
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bind_group.as_ref()
+        self.bound.get()
     }
 
     /// Layout entries for one of a renderer's own bind groups, in which these four bindings begin at `first_binding`.
@@ -318,11 +333,11 @@ impl FrameBindings {
     /// The entries of such a bind group. [`update`](Self::update) replaces them if lights move to other buffers. They are
     /// empty before the first one.
     pub fn bind_entries(&self, first_binding: u32) -> Vec<wgpu::BindGroupEntry<'_>> {
-        let Some(lights) = &self.lights else { return Vec::new() };
-        let buffers = [&self.uniform].into_iter().chain(lights);
-        (0..)
-            .zip(buffers)
-            .map(|(ix, buffer)| entry(first_binding.saturating_add(ix), buffer))
-            .collect()
+        self.bound.entries(first_binding)
     }
+}
+
+fn view_uniform(frame: &Frame<'_>) -> Result<ViewUniform, AssignError> {
+    frame.view.check()?;
+    Ok(ViewUniform { seed: frame.seed, ..frame.view.uniform() })
 }

@@ -19,8 +19,8 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightBuffer, LightLists, Lookup, ModelBox, Needs, Passes,
-    SampleDomain, Travel, View,
+    AssignError, Assignment, Frame, FrameWrites, Gpu, LightBuffer, LightKinds, LightLists,
+    LightTraits, Lookup, ModelBox, Needs, Passes, SampleDomain, Travel, View,
 };
 
 /// Room for lights that become faster: the next frames may move them so much further than the last one.
@@ -32,6 +32,8 @@ pub struct Keep {
     frames: u32,
     /// The lights with larger balls, in the same slots.
     wide: LightBuffer,
+    /// What `wide` uploads for a frame.
+    writes: FrameWrites,
     /// How far the balls reach beyond the lights' own, metres.
     reach_m: f32,
     /// The travel of the frame before.
@@ -94,6 +96,7 @@ impl Keep {
             inner,
             frames,
             wide: LightBuffer::new(gpu, &[])?,
+            writes: FrameWrites::new(gpu),
             reach_m: 0.0,
             last: None,
             made: None,
@@ -114,6 +117,15 @@ impl Assignment for Keep {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.frames)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        // Larger balls stand for cones and outlines.
+        self.inner.compile(gpu, LightTraits { kinds: LightKinds::default(), ..lights })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -141,7 +153,7 @@ impl Assignment for Keep {
         self.made = None;
         let step_m = last.map_or(0.0, |last| travel.since(&last));
         self.reach_m = step_m as f32 * (self.frames - 1) as f32 * ROOM;
-        self.wide.update_wide(gpu, frame.lights, self.reach_m)?;
+        self.wide.update_wide(gpu, frame.lights, self.reach_m, &mut self.writes)?;
         self.inner.prepare(gpu, &Frame { lights: &self.wide, ..*frame })?;
         // It may have laid the lists out anew.
         now.generations[0] = self.inner.lists().generation();
@@ -153,6 +165,7 @@ impl Assignment for Keep {
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         match (self.next, &mut self.made) {
             (Some(next), made) => {
+                self.writes.record(passes.encoder());
                 self.wide.record(passes);
                 self.inner.record(&Frame { lights: &self.wide, ..*frame }, passes);
                 *made = Some((next, 0));
@@ -179,6 +192,6 @@ impl Assignment for Keep {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes() + self.wide.memory_bytes()
+        self.inner.memory_bytes() + self.wide.memory_bytes() + self.writes.bytes()
     }
 }

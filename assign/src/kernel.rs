@@ -56,7 +56,8 @@ pub fn layout(
     gpu.bind_group_layout(label, &entries)
 }
 
-/// A bind group of whole buffers at bindings 0, 1, 2 and so on.
+/// A bind group of whole buffers at bindings 0, 1, 2 and so on. What is bound in every frame goes through
+/// [`KeptBindGroup`](crate::KeptBindGroup) instead.
 pub fn bind_buffers(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
@@ -73,7 +74,7 @@ pub fn bind_entries(
     layout: &wgpu::BindGroupLayout,
     entries: &[wgpu::BindGroupEntry<'_>],
 ) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
+    gpu.bind_group("kernel", layout, entries)
 }
 
 /// The pipeline of an entry point over bind groups 0, 1, 2 and so on. A kernel that leaves some groups

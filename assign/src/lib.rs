@@ -29,18 +29,26 @@ mod compiled;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod cull;
+mod cull_kernel;
 mod cull_settings;
+mod cull_source;
 mod emitter;
 mod entries;
 mod error;
+mod events;
 mod everything;
 mod fewer;
 mod frame;
+mod frame_writes;
 mod gpu;
+#[cfg(not(target_arch = "wasm32"))]
+mod gpu_open;
 mod groups;
 mod half;
+mod hitches;
 pub mod intersect;
 mod keep;
+mod kept_bind_group;
 pub mod kernel;
 mod light;
 mod light_buffer;
@@ -52,6 +60,7 @@ mod light_reader;
 mod light_record;
 mod light_sorter;
 mod link_errors;
+mod limits;
 mod list_records;
 mod lists;
 mod lists_bindings;
@@ -90,10 +99,13 @@ pub use error::AssignError;
 pub use everything::Everything;
 pub use fewer::{Fewer, Kept};
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain};
-pub use gpu::{Gpu, Mapped};
+pub use frame_writes::FrameWrites;
+pub use gpu::Gpu;
 pub use groups::{Facing, GroupShape, Groups};
 pub use half::Half;
+pub use hitches::{Hitches, Mapped};
 pub use keep::Keep;
+pub use kept_bind_group::KeptBindGroup;
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};
 pub use light_buffer::{GpuLights, LightBuffer, MAX_LIGHTS, RejectedLight, SlotCounts, Travel};
 pub use light_changes::LightChanges;
@@ -102,6 +114,7 @@ pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
 pub use light_reader::{BOUNDS_BOX_WESL, LightReader, Team};
 pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere, LightTraits};
+pub use limits::{check_limits, storage_buffer_limits};
 pub use list_records::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
     ListsSnapshot,

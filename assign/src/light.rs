@@ -128,7 +128,7 @@ impl Light {
             return out("intensity", self.intensity.max_element(), "at most 1e18");
         }
         if self.intensity.max_element() == 0.0 {
-            return out("intensity", 0.0, "above 0 in some channel");
+            return Err(LightFault::DARK);
         }
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
             finite("spot direction", direction)?;

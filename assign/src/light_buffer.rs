@@ -2,34 +2,36 @@
 //! that were omitted.
 
 mod decode;
+mod extent;
 mod given;
 mod gpu_lights;
 mod living;
 mod travel;
 mod wide;
 
+#[cfg(feature = "build-time")]
 use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
-use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightKinds, LightOrder, LightTraits, Passes,
+    AssignError, Gpu, Light, LightKinds, LightOrder, LightTraits, Passes, events,
     light_nodes::{LightNode, NodeLevels, nodes},
 };
-use given::Given;
 pub(crate) use given::Records;
+use given::{Given, check_count};
 pub use given::{MAX_LIGHTS, RejectedLight};
 pub use gpu_lights::GpuLights;
+use living::Living;
 pub use living::SlotCounts;
-use living::{Living, Source};
 pub use travel::Travel;
 use wide::WideLights;
 
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
 /// shading.
 ///
-/// The buffer omits faulty lights and sorts the others by its [`LightOrder`]. A light's index is its
+/// The buffer omits faulty lights and lights of intensity 0, unless it [keeps
+/// indices](Self::keep_indices), and sorts the others by its [`LightOrder`]. A light's index is its
 /// place in that order, its *slot*.
 ///
 /// - For lights that stand still, [`ordered`](Self::ordered) sorts them on the CPU, once.
@@ -47,7 +49,9 @@ pub struct LightBuffer {
     emissions: wgpu::Buffer,
     shapes: wgpu::Buffer,
     nodes: wgpu::Buffer,
+    #[cfg(feature = "build-time")]
     build_time: Duration,
+    keeps_indices: bool,
     living: Option<Living>,
     wide: Option<WideLights>,
     travel: Travel,
@@ -88,7 +92,9 @@ impl LightBuffer {
             emissions: gpu.storage("light emissions", 0)?,
             shapes: gpu.storage("light shapes", 0)?,
             nodes: gpu.storage("light nodes", size_of::<LightNode>() as u64)?,
+            #[cfg(feature = "build-time")]
             build_time: Duration::ZERO,
+            keeps_indices: false,
             living,
             wide: None,
             travel: Travel::default(),
@@ -96,12 +102,35 @@ impl LightBuffer {
         })
     }
 
+    /// Whether later [updates](Self::update) keep a place for every light of the renderer's list. Lights that are faulty
+    /// or of intensity 0 then stay as lights of intensity 0 that reach a millionth of a metre, and [`lights`](Self::lights)
+    /// has as many lights as the renderer's list, in its order unless this buffer has another. So a light's index in the
+    /// renderer's own arrays, such as those of shadow maps, is [`given_index`](Self::given_index) of its slot, and with
+    /// [`LightOrder::Given`] it is the slot itself. Without it the buffer omits these lights, and later lights move up.
+    /// Either way [`rejected`](Self::rejected) names the faulty ones.
+    pub fn keep_indices(&mut self, keep: bool) {
+        self.keeps_indices = keep;
+    }
+
+    /// Compiles ahead what later updates with such lights need, if the GPU sorts them.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Shader`] if a kernel does not link.
+    pub fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+        match &mut self.living {
+            Some(living) => living.compile_ahead(gpu, kinds),
+            None => Ok(()),
+        }
+    }
+
     /// Replaces the lights, once per frame at most. Buffers grow as needed, so bind groups that hold
     /// them must be made again, as [`FrameBindings`](crate::FrameBindings) does. With
     /// [`LightOrder::Gpu`] it uploads only what changed. After an error, the old lights stay.
     pub fn update(&mut self, gpu: &Gpu, lights: &[Light]) -> Result<(), AssignError> {
         check_count(lights.len())?;
-        let mut given = Given::new(lights);
+        let mut given = Given::new(lights, self.keeps_indices);
+        events::rejected(&self.given.rejected, &given.rejected);
         if let Some(living) = &mut self.living {
             // After an error it only counts too much.
             self.travel.add(self.given.step_to(&given));
@@ -110,9 +139,11 @@ impl LightBuffer {
             self.take_living();
             return Ok(());
         }
+        #[cfg(feature = "build-time")]
         let began = Instant::now();
         given.reorder(&self.order.indices(&given.lights));
         let nodes = nodes(&given.lights);
+        #[cfg(feature = "build-time")]
         let build_time = began.elapsed();
         let records = Records::new(&given.lights);
         // Makes all buffers before it changes any field, so that the old lights stay whole after an
@@ -135,7 +166,10 @@ impl LightBuffer {
         }
         self.travel.add(self.given.step_to(&given));
         self.given = given;
-        self.build_time = build_time;
+        #[cfg(feature = "build-time")]
+        {
+            self.build_time = build_time;
+        }
         Ok(())
     }
 
@@ -265,6 +299,7 @@ impl LightBuffer {
     }
 
     /// How long the CPU took to sort the lights and to build the hierarchy over them.
+    #[cfg(feature = "build-time")]
     pub fn build_time(&self) -> Duration {
         self.build_time
     }
@@ -297,7 +332,8 @@ impl LightBuffer {
         buffers.into_iter().map(wgpu::Buffer::size).sum()
     }
 
-    /// The faulty lights that [`update`](Self::update) omitted.
+    /// The lights that the last [`update`](Self::update) rejected: faulty ones, and without [kept
+    /// indices](Self::keep_indices) also those of intensity 0.
     pub fn rejected(&self) -> &[RejectedLight] {
         &self.given.rejected
     }
@@ -324,25 +360,6 @@ impl LightBuffer {
         living.or(self.wide.as_ref().map(WideLights::capacity)).unwrap_or_else(|| self.count())
     }
 
-    /// World-space box around all supports, metres; `None` without lights. For lights from the GPU
-    /// it is the stated box, extended by the largest range.
-    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        match self.living.as_ref().and_then(Living::source) {
-            Some(Source::Gpu { bounds: (low, high), radius_max_m, .. }) => {
-                Some((*low - *radius_max_m, *high + *radius_max_m))
-            }
-            _ => self.given.bounds,
-        }
-    }
-
-    /// World-space box around all positions, metres, without the ranges; `None` without lights.
-    pub fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
-        match self.living.as_ref().and_then(Living::source) {
-            Some(Source::Gpu { bounds, .. }) => Some(*bounds),
-            _ => self.given.position_bounds,
-        }
-    }
-
     /// The spheres: `array<LightSphere>`.
     pub fn spheres(&self) -> &wgpu::Buffer {
         &self.spheres
@@ -362,17 +379,6 @@ impl LightBuffer {
     pub fn nodes(&self) -> &wgpu::Buffer {
         &self.nodes
     }
-}
-
-fn check_count(lights: usize) -> Result<(), AssignError> {
-    if lights <= MAX_LIGHTS {
-        return Ok(());
-    }
-    Err(AssignError::Parameter {
-        field: "lights".into(),
-        value: lights.to_string(),
-        accepted: format!("at most {MAX_LIGHTS}"),
-    })
 }
 
 /// The buffer if `bytes` fit into it, else a larger one.

@@ -10,9 +10,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, LightBuffer, LightKinds, Passes, Shader,
+    AssignError, FrameWrites, Gpu, KeptBindGroup, LightBuffer, LightKinds, Passes, Shader,
     entries::{entry, storage_entry},
-    kernel::{Slot, bind_buffers, bind_entries, layout, pipeline, workgroups},
+    kernel::{Slot, layout, pipeline, workgroups},
 };
 
 /// Lanes of a workgroup: `find_changes`.
@@ -39,13 +39,15 @@ impl ChangesHeader {
 pub struct LightChanges {
     /// Layout of bind group 0: the lights, where [`FrameBindings`](crate::FrameBindings) has them.
     light_layout: wgpu::BindGroupLayout,
-    lights: Option<wgpu::BindGroup>,
+    lights: KeptBindGroup,
     layout: wgpu::BindGroupLayout,
     changes: wgpu::Buffer,
     /// What culling reads of each slot: `array<Known>`.
     known: wgpu::Buffer,
-    bind_group: Option<wgpu::BindGroup>,
-    kernel: Option<Kernel>,
+    bound: KeptBindGroup,
+    /// One per kind of lights that came up; that of the prepared frame comes first.
+    kernels: Vec<Kernel>,
+    writes: FrameWrites,
     workgroups: u32,
     /// The number of lights, if only the GPU knows it.
     live_count: Option<wgpu::Buffer>,
@@ -73,12 +75,13 @@ impl LightChanges {
         let bytes = size_of::<ChangesHeader>() as u64 + u64::from(Self::MOST_BALLS) * 16;
         Ok(Self {
             light_layout: gpu.bind_group_layout("lights", &lights),
-            lights: None,
+            lights: KeptBindGroup::default(),
             layout: layout(gpu, "light changes", stages, &[Slot::Write; 2]),
             changes: gpu.storage("light changes", bytes)?,
             known: gpu.storage("known lights", 0)?,
-            bind_group: None,
-            kernel: None,
+            bound: KeptBindGroup::default(),
+            kernels: Vec::new(),
+            writes: FrameWrites::new(gpu),
             workgroups: 0,
             live_count: None,
             bounds: None,
@@ -105,32 +108,38 @@ impl LightChanges {
         let (slots, kinds) = (lights.count(), lights.kinds());
         let entries =
             [entry(1, lights.spheres()), entry(2, lights.emissions()), entry(3, lights.shapes())];
-        self.lights = Some(bind_entries(gpu, &self.light_layout, &entries));
+        self.lights.bind(gpu, "lights", &self.light_layout, &entries);
         // `struct Known`; a shader that binds the buffer needs room for one.
         let of_slot = if kinds == LightKinds::default() { 16 } else { 80 };
         let bytes = u64::from(slots.max(1)) * of_slot;
         if self.known.size() < bytes {
             self.known = gpu.storage("known lights", bytes)?;
         }
-        if self.kernel.as_ref().is_none_or(|kernel| kernel.kinds != kinds) {
-            self.kernel = Some(self.compile(gpu, kinds)?);
-        }
+        self.compile(gpu, kinds)?;
         self.live_count = lights.live_count().cloned();
         let header =
             ChangesHeader { slot_count: slots, light_count: slots, ..ChangesHeader::default() };
-        gpu.queue.write_buffer(&self.changes, 0, bytemuck::bytes_of(&header));
-        self.bind_group = Some(bind_buffers(gpu, &self.layout, &[&self.changes, &self.known]));
+        self.writes.write(&self.changes, 0, bytemuck::bytes_of(&header))?;
+        let buffers = [entry(0, &self.changes), entry(1, &self.known)];
+        self.bound.bind(gpu, "light changes", &self.layout, &buffers);
         self.workgroups = workgroups(slots.into(), LANES);
         Ok(())
     }
 
-    fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
+    /// Compiles the kernels for kinds of lights, unless they are compiled, and has the next frame use them.
+    pub(crate) fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+        if let Some(place) = self.kernels.iter().position(|kernel| kernel.kinds == kinds) {
+            self.kernels[..=place].rotate_right(1);
+            return Ok(());
+        }
         // SAFETY: its loop counts up to the number of slots by a step of at least one workgroup.
         #[allow(unsafe_code, reason = "its loop ends")]
         let module = unsafe { shader(kinds).create_uncounted(gpu, "package::light_changes") }?;
         let layouts = [&self.light_layout, &self.layout];
         let entry = |entry_point| pipeline(gpu, &module, entry_point, &layouts);
-        Ok(Kernel { kinds, clear: entry("clear_changes"), find: entry("find_changes") })
+        let kernel = Kernel { kinds, clear: entry("clear_changes"), find: entry("find_changes") };
+        self.kernels.insert(0, kernel);
+        Ok(())
     }
 
     /// The kernels' linked WGSL for lights of these kinds.
@@ -139,15 +148,16 @@ impl LightChanges {
     }
 
     /// Records the pass `changes`. Call it after the light buffer's passes of the frame.
-    pub(crate) fn record(&self, passes: &mut dyn Passes) {
-        let Some(kernel) = &self.kernel else { return };
+    pub(crate) fn record(&mut self, passes: &mut dyn Passes) {
+        let Some(kernel) = self.kernels.first() else { return };
+        self.writes.record(passes.encoder());
         if let Some(count) = &self.live_count {
             let at = ChangesHeader::LIGHT_COUNT_AT;
             passes.encoder().copy_buffer_to_buffer(count, 0, &self.changes, at, 4);
         }
         passes.compute("changes", &mut |pass| {
-            pass.set_bind_group(0, self.lights.as_ref(), &[]);
-            pass.set_bind_group(1, self.bind_group.as_ref(), &[]);
+            pass.set_bind_group(0, self.lights.get(), &[]);
+            pass.set_bind_group(1, self.bound.get(), &[]);
             pass.set_pipeline(&kernel.clear);
             pass.dispatch_workgroups(1, 1, 1);
             pass.set_pipeline(&kernel.find);
@@ -172,7 +182,7 @@ impl LightChanges {
 
     /// Bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
-        self.changes.size() + self.known.size()
+        self.changes.size() + self.known.size() + self.writes.bytes()
     }
 }
 

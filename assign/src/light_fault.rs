@@ -25,3 +25,10 @@ pub enum LightFault {
         accepted: &'static str,
     },
 }
+
+impl LightFault {
+    /// What [`Light::check`](crate::Light::check) says of a light of intensity 0, which lights nothing. A
+    /// [`LightBuffer`](crate::LightBuffer) that keeps indices does not count it as faulty.
+    pub const DARK: Self =
+        Self::OutOfRange { field: "intensity", value: 0.0, accepted: "above 0 in some channel" };
+}

@@ -77,8 +77,22 @@ impl LightSorter {
     }
 
     /// Whether the sorter serves these lights.
-    pub(crate) fn serves(&self, capacity: u32, kinds: LightKinds, given: &GivenBuffers) -> bool {
-        capacity <= self.capacity() && self.boxes.kernels.kinds == kinds && self.given == *given
+    pub(crate) fn serves(&self, capacity: u32, given: &GivenBuffers) -> bool {
+        capacity <= self.capacity() && self.given == *given
+    }
+
+    /// Has frames take lights of some kinds. Compiles their kernels the first time.
+    pub(crate) fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+        self.boxes.compile(gpu, kinds)
+    }
+
+    /// Compiles kernels for other kinds of lights than those of the frame.
+    pub(crate) fn compile_ahead(
+        &mut self,
+        gpu: &Gpu,
+        kinds: LightKinds,
+    ) -> Result<(), AssignError> {
+        self.boxes.find(gpu, kinds).map(|_| ())
     }
 
     /// Uploads the parameters of a frame whose positions are in a box. Balls may reach `reach_m` beyond

@@ -23,7 +23,7 @@ pub struct LightList {
     pub count: u32,
 }
 
-/// The counters that the GPU writes: `struct Counters` of `reserve.wesl`.
+/// The counters that the GPU writes behind the last record. `reserve.wesl` names their places.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Counters {
@@ -97,5 +97,28 @@ impl ListsSnapshot {
         let list = self.list(group)?;
         let first = list.first as usize;
         self.entries.get(first..first.checked_add(list.count as usize)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+
+    #[test]
+    fn kernels_count_where_the_cpu_reads() {
+        let shader = include_str!("shaders/reserve.wesl");
+        for (name, offset) in [
+            ("CURSOR", offset_of!(Counters, cursor)),
+            ("REQUESTED_LOW", offset_of!(Counters, requested_low)),
+            ("REQUESTED_HIGH", offset_of!(Counters, requested_high)),
+            ("OVERFLOWED_GROUPS", offset_of!(Counters, overflowed_groups)),
+            ("OCCUPIED_GROUPS", offset_of!(Counters, occupied_groups)),
+            ("LONGEST", offset_of!(Counters, longest)),
+        ] {
+            let line = format!("const {name}: u32 = {}u;", offset / 4);
+            assert!(shader.contains(&line), "reserve.wesl lacks `{line}`");
+        }
     }
 }

@@ -3,25 +3,25 @@
 //! `lists[g + 1] = (first, count)` points into `entries`. Record 0 lists all lights. The entries
 //! begin with all lights in order; the pool from which groups reserve follows them. A group whose
 //! list does not fit gets the record `(0, light_count)`, which is slow but correct, and the
-//! overflow is counted.
+//! overflow is counted. The counters stand behind the last record, in the same buffer: WebGPU promises a shader no more
+//! than eight storage buffers.
 //!
 //! Other storages than plain lists have essays of their own: `masks.rs`, `scalar_masks.rs` and `trees.rs`.
 //!
 //! Worked example: 5 lights, capacity for 8, lists of 2, 0 and 3 entries:
 //! `lists = [(0, 5), (8, 2), (0, 0), (10, 3)]`, `entries = [0 1 2 3 4 - - - | a b c d e]`.
 
-use bytemuck::{cast_slice, pod_collect_to_vec};
+mod sizes;
+
+use bytemuck::{bytes_of, cast_slice, pod_collect_to_vec};
 
 use crate::{
-    AssignError, Counters, CullUniform, Gpu, LightBuffer, LightList, ListsSnapshot, Storage,
-    light_nodes::NodeLevels, list_records::ALL_TERMS, masks::MaskLayout, readback::Readback,
+    AssignError, Counters, CullUniform, FrameWrites, Gpu, LightBuffer, LightList, ListsSnapshot,
+    Storage, events, light_nodes::NodeLevels, masks::MaskLayout, readback::Readback,
 };
 
 /// The most entries of the pool, 4 GiB. `CAREFUL` in `reserve.wesl` relies on it.
 const MAX_POOL: u64 = 1 << 30;
-
-/// The most entries with which the pool starts, 64 MiB.
-const MAX_GUESS: u64 = 16 << 20;
 
 /// Bytes of one set of counters.
 const COUNTERS_BYTES: u64 = size_of::<Counters>() as u64;
@@ -34,7 +34,6 @@ pub struct LightLists {
     masks: MaskLayout,
     lists: wgpu::Buffer,
     entries: wgpu::Buffer,
-    counters: wgpu::Buffer,
     uniform: wgpu::Buffer,
     light_capacity: u32,
     pool_capacity: u32,
@@ -46,6 +45,10 @@ pub struct LightLists {
     generation: u32,
     counts: (u32, u32),
     readback: Readback<Counters>,
+    /// What the strategy uploads for a frame.
+    writes: FrameWrites,
+    /// Whether the frame's writes were recorded before the pass that fills the lists.
+    is_written: bool,
 }
 
 impl LightLists {
@@ -59,9 +62,8 @@ impl LightLists {
         Ok(Self {
             storage,
             masks: MaskLayout::default(),
-            lists: gpu.storage("light lists", 8)?,
+            lists: gpu.storage("light lists", 8 + COUNTERS_BYTES)?,
             entries: gpu.storage("light entries", 4)?,
-            counters: gpu.storage("list counters", COUNTERS_BYTES)?,
             uniform: gpu.uniform("cull", size_of::<CullUniform>() as u64),
             light_capacity: 0,
             pool_capacity: 0,
@@ -71,6 +73,8 @@ impl LightLists {
             generation: 0,
             counts: (0, 0),
             readback: Readback::new(gpu, "list counters"),
+            writes: FrameWrites::new(gpu),
+            is_written: false,
         })
     }
 
@@ -96,6 +100,28 @@ impl LightLists {
         self.room = room;
     }
 
+    /// Whether the pool has room for new lists while others stay.
+    pub(crate) fn leaves_room(&self) -> bool {
+        self.room > 1
+    }
+
+    /// Takes the limits of other lists: those of the pool and of the lists' length. A strategy for another view has
+    /// the same limits.
+    pub fn limit_as(&mut self, other: &Self) {
+        self.pool_limit = other.pool_limit;
+        self.list_cap = other.list_cap;
+        self.room = other.room;
+    }
+
+    /// Takes the counters that have arrived.
+    fn take_counters(&mut self) {
+        let before = self.readback.latest();
+        self.readback.poll();
+        if let Some(now) = self.readback.latest().filter(|now| before != Some(*now)) {
+            events::counted(before, now);
+        }
+    }
+
     /// Words for which the pool needs room, as far as the counters that have arrived tell.
     fn asked(&self) -> u64 {
         let words = |counters: Counters| {
@@ -113,7 +139,7 @@ impl LightLists {
     /// Whether a frame that makes all lists would grow the pool, as far as the counters that have arrived
     /// tell. Until then, lists that did not fit stay all lights.
     pub(crate) fn wants_growth(&mut self, gpu: &Gpu) -> bool {
-        self.readback.poll(gpu);
+        self.take_counters();
         if self.storage.is_mask() {
             return false;
         }
@@ -161,14 +187,12 @@ impl LightLists {
         group_count: u32,
     ) -> Result<bool, AssignError> {
         let (light_count, levels) = (lights.count(), lights.levels());
-        self.readback.poll(gpu);
+        self.take_counters();
         let asked = self.asked();
         let records = u64::from(group_count) + 1;
-        let larger = if self.lists.size() < records * 8 {
-            Some(gpu.storage("light lists", records * 8)?)
-        } else {
-            None
-        };
+        let bytes = records * 8 + COUNTERS_BYTES;
+        let larger =
+            if self.lists.size() < bytes { Some(gpu.storage("light lists", bytes)?) } else { None };
         let mut changed = if self.storage.is_mask() {
             self.size_masks(gpu, light_count, records)?
         } else {
@@ -179,19 +203,20 @@ impl LightLists {
             changed = true;
         }
         self.counts = (light_count, group_count);
-        self.upload(gpu, levels);
+        self.upload(levels)?;
         Ok(changed)
     }
 
     /// Prepares a frame that makes only some lists, for as many lights and groups as the frame before.
     /// It replaces no buffer, because the others stay.
-    pub(crate) fn prepare_update(&mut self, gpu: &Gpu, lights: &LightBuffer) {
-        self.readback.poll(gpu);
-        self.upload(gpu, lights.levels());
+    pub(crate) fn prepare_update(&mut self, lights: &LightBuffer) -> Result<(), AssignError> {
+        self.take_counters();
+        self.upload(lights.levels())
     }
 
     /// Uploads the numbers of the prepared frame.
-    fn upload(&self, gpu: &Gpu, levels: NodeLevels) {
+    fn upload(&mut self, levels: NodeLevels) -> Result<(), AssignError> {
+        self.is_written = false;
         let (light_count, group_count) = self.counts;
         let records = u64::from(group_count) + 1;
         let all_pairs = u64::from(light_count) * records;
@@ -199,7 +224,11 @@ impl LightLists {
             self.storage.pool_words(all_pairs, records) + u64::from(self.pool_capacity);
         // In every frame, because a number that the GPU wrote may have replaced it.
         let all = LightList { first: self.masks.summary, count: light_count };
-        gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
+        self.writes.write(&self.lists, 0, bytes_of(&all))?;
+        if self.masks.stride > 0 {
+            let all = vec![u32::MAX; self.masks.stride as usize];
+            self.writes.write(&self.entries, 0, cast_slice(&all))?;
+        }
         let cull = CullUniform {
             light_count,
             group_count,
@@ -213,99 +242,44 @@ impl LightLists {
             mask_stride: self.masks.stride,
             mask_summary: self.masks.summary,
         };
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
+        self.writes.write(&self.uniform, 0, bytes_of(&cull))
     }
 
-    /// Replaces the entry buffer if all lights or the pool no longer fit.
-    fn size_entries(
-        &mut self,
-        gpu: &Gpu,
-        light_count: u32,
-        group_count: u32,
-        asked: u64,
-    ) -> Result<bool, AssignError> {
-        let room = gpu.max_storage_bytes() / 4;
-        let light_capacity = light_count.max(self.light_capacity).next_power_of_two();
-        if u64::from(light_capacity) > room {
-            return Err(AssignError::TooLarge {
-                what: format!("the list of all {light_count} lights"),
-                bytes: u64::from(light_capacity) * 4,
-                limit: room * 4,
-            });
-        }
-        // A guess until a frame has counted: 16 entries per group, or every (light, group) pair if
-        // those are fewer.
-        let groups = u64::from(group_count);
-        let pairs = groups * u64::from(light_count.min(16));
-        let guess = self.storage.pool_words(pairs, groups).min(MAX_GUESS);
-        let has = u64::from(self.pool_capacity);
-        // A quarter more than requested, so that a moving camera does not grow the pool each frame.
-        let grown = if asked > has { asked + asked / 4 } else { has };
-        let most = self.most_entries(gpu, light_capacity);
-        let wanted = grown.max(guess).min(most) as u32;
-        if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
-            return Ok(false);
-        }
-        let all: Vec<u32> = (0..light_capacity).map(|light| light | ALL_TERMS).collect();
-        let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
-        self.entries = match gpu.storage("light entries", bytes) {
-            // Keeps the pool as it is. Lists that do not fit stay all lights.
-            Err(AssignError::OutOfMemory { .. }) if light_capacity == self.light_capacity => {
-                self.pool_limit = self.pool_capacity;
-                return Ok(false);
-            }
-            other => other?,
-        };
-        gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));
-        self.light_capacity = light_capacity;
-        self.pool_capacity = wanted;
-        Ok(true)
+    /// What the strategy uploads for a frame. Besides what the strategy adds, it holds the lists' own numbers.
+    pub fn writes_mut(&mut self) -> &mut FrameWrites {
+        &mut self.writes
     }
 
-    /// Replaces the buffer of bit masks if they no longer fit, and sets all bits of the first.
-    fn size_masks(&mut self, gpu: &Gpu, lights: u32, regions: u64) -> Result<bool, AssignError> {
-        let masks = MaskLayout::over(lights)?;
-        let words = u64::from(masks.stride) * regions;
-        let most = (gpu.max_storage_bytes() / 4).min(u64::from(u32::MAX));
-        if words > most {
-            return Err(AssignError::TooLarge {
-                what: format!("the bit masks of {lights} lights in {regions} groups"),
-                bytes: words * 4,
-                limit: most * 4,
-            });
-        }
-        let changed = self.entries.size() < words * 4;
-        if changed {
-            // A quarter more, so that a growing number of lights does not replace it in each frame.
-            self.entries = gpu.storage("light masks", (words + words / 4).min(most) * 4)?;
-        }
-        if changed || masks != self.masks {
-            let all = vec![u32::MAX; masks.stride as usize];
-            gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));
-        }
-        self.masks = masks;
-        Ok(changed)
+    /// Records the frame's [writes](Self::writes_mut). A strategy with passes before those that make lists calls it
+    /// before them; for all others [`record_reset`](Self::record_reset) does it.
+    pub fn record_writes(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.writes.record(encoder);
+        self.is_written = true;
     }
 
-    /// Resets the counters. Call it in the encoder of the pass that fills them, before that pass.
-    /// So they count one frame only, whatever happened to earlier frames. `live_count` is
-    /// [`LightBuffer::live_count`]: if only the GPU knows the number of lights, it is copied to where
-    /// kernels and shading read it.
+    /// Records the frame's [writes](Self::writes_mut), if that is still to do, and resets the counters. Call it in
+    /// the encoder of the pass that fills the lists, before that pass. So counters count one frame only, whatever
+    /// happened to earlier frames. `live_count` is [`LightBuffer::live_count`]: if only the GPU knows the number of
+    /// lights, it is copied to where kernels and shading read it.
     pub fn record_reset(
-        &self,
+        &mut self,
         encoder: &mut wgpu::CommandEncoder,
         live_count: Option<&wgpu::Buffer>,
     ) {
-        encoder.clear_buffer(&self.counters, 0, None);
         self.record_light_count(encoder, live_count);
+        encoder.clear_buffer(&self.lists, self.counters_at(), Some(COUNTERS_BYTES));
     }
 
-    /// Copies the number of lights to where kernels and shading read it, if only the GPU knows it.
+    /// Records the writes that are still to do, and copies the number of lights to where kernels and shading read it,
+    /// if only the GPU knows it.
     pub(crate) fn record_light_count(
-        &self,
+        &mut self,
         encoder: &mut wgpu::CommandEncoder,
         live_count: Option<&wgpu::Buffer>,
     ) {
+        if !self.is_written {
+            self.writes.record(encoder);
+        }
         if let Some(count) = live_count {
             // `CullUniform::light_count`, and the count of record 0.
             encoder.copy_buffer_to_buffer(count, 0, &self.uniform, 0, 4);
@@ -315,7 +289,13 @@ impl LightLists {
 
     /// Copies the counters for [`stats`](Self::stats). Call it after the last pass that counts.
     pub fn record_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.readback.record(encoder, &self.counters);
+        let at = self.counters_at();
+        self.readback.record(encoder, &self.lists, at);
+    }
+
+    /// Where the counters are in the buffer of records, bytes: behind the last record.
+    pub(crate) fn counters_at(&self) -> u64 {
+        (u64::from(self.counts.1) + 1) * 8
     }
 
     /// The newest counters that have arrived. They may be a few frames old.
@@ -325,10 +305,10 @@ impl LightLists {
 
     /// Reads everything back. Blocks until the device has finished.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
-        let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
-        let counters = gpu.read(&self.counters, COUNTERS_BYTES)?;
-        let counters: Counters = bytemuck::pod_read_unaligned(&counters);
-        let lists: Vec<LightList> = pod_collect_to_vec(&lists);
+        let records = gpu.read(&self.lists, self.counters_at() + COUNTERS_BYTES)?;
+        let (lists, counters) = records.split_at(self.counters_at() as usize);
+        let counters: Counters = bytemuck::pod_read_unaligned(counters);
+        let lists: Vec<LightList> = pod_collect_to_vec(lists);
         let used = if self.storage.is_mask() {
             (self.counts.1 + 1) * self.masks.stride
         } else {
@@ -355,15 +335,15 @@ impl LightLists {
 
     /// Bytes of groups, entries and counters on the GPU.
     pub fn bytes(&self) -> u64 {
-        self.lists.size() + self.entries.size() + self.counters.size() + self.uniform.size()
+        self.lists.size() + self.entries.size() + self.uniform.size()
     }
 
-    /// As [`bytes`](Self::bytes), plus the read-back buffers of the counters.
+    /// As [`bytes`](Self::bytes), plus the buffers through which data go to and from the GPU.
     pub fn memory_bytes(&self) -> u64 {
-        self.bytes() + self.readback.bytes()
+        self.bytes() + self.readback.bytes() + self.writes.bytes()
     }
 
-    /// The records: `array<LightList>`.
+    /// The records: `array<LightList>`, and behind those of the frame's groups the counters.
     pub fn lists(&self) -> &wgpu::Buffer {
         &self.lists
     }
@@ -371,11 +351,6 @@ impl LightLists {
     /// The entries: `array<u32>`.
     pub fn entries(&self) -> &wgpu::Buffer {
         &self.entries
-    }
-
-    /// The counters: `struct Counters`.
-    pub fn counters(&self) -> &wgpu::Buffer {
-        &self.counters
     }
 
     /// The culling kernel's parameters: `struct Cull`.

@@ -2,7 +2,7 @@
 //! shading.
 
 use crate::{
-    Gpu, LightLists,
+    Gpu, KeptBindGroup, LightLists,
     entries::{entry, storage_entry, uniform_entry},
 };
 
@@ -13,9 +13,9 @@ pub const FIRST_STRATEGY_BINDING: u32 = 4;
 ///
 /// | binding | WESL | kernel | look-up |
 /// |---|---|---|---|
-/// | 0 | `lists` | written | read |
+/// | 0 | `lists`; in kernels `reserve::records`, with the counters | written | read |
 /// | 1 | `entries` | written | read |
-/// | 2 | `reserve::counters` | written | |
+/// | 2 | free | | |
 /// | 3 | `reserve::cull` | uniform | |
 /// | from [`FIRST_STRATEGY_BINDING`] | the strategy's own | | |
 #[derive(Debug)]
@@ -23,44 +23,7 @@ pub struct ListsBindings {
     entries: Vec<wgpu::BindGroupLayoutEntry>,
     layout: wgpu::BindGroupLayout,
     in_kernel: bool,
-    bound: Vec<(u32, Resource)>,
-    bind_group: Option<wgpu::BindGroup>,
-}
-
-/// What is bound.
-#[derive(Debug)]
-enum Resource {
-    Buffer { buffer: wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize> },
-    Texture(wgpu::TextureView),
-    Sampler(wgpu::Sampler),
-}
-
-impl Resource {
-    /// `None` for kinds of resources that no look-up reads: arrays of bindings, acceleration structures.
-    fn of(resource: &wgpu::BindingResource<'_>) -> Option<Self> {
-        match resource {
-            wgpu::BindingResource::Buffer(at) => {
-                Some(Self::Buffer { buffer: at.buffer.clone(), offset: at.offset, size: at.size })
-            }
-            wgpu::BindingResource::TextureView(view) => Some(Self::Texture((*view).clone())),
-            wgpu::BindingResource::Sampler(sampler) => Some(Self::Sampler((*sampler).clone())),
-            _ => None,
-        }
-    }
-
-    fn binding(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer { buffer, offset, size } => {
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer,
-                    offset: *offset,
-                    size: *size,
-                })
-            }
-            Self::Texture(view) => wgpu::BindingResource::TextureView(view),
-            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
-        }
-    }
+    bound: KeptBindGroup,
 }
 
 impl ListsBindings {
@@ -70,7 +33,6 @@ impl ListsBindings {
         let lists = [
             storage_entry(0, stages, false),
             storage_entry(1, stages, false),
-            storage_entry(2, stages, false),
             uniform_entry(3, stages),
         ];
         Self::new(gpu, label, true, [&lists, bindings].concat())
@@ -90,24 +52,18 @@ impl ListsBindings {
         entries: Vec<wgpu::BindGroupLayoutEntry>,
     ) -> Self {
         let layout = gpu.bind_group_layout(label, &entries);
-        Self { entries, layout, in_kernel, bound: Vec::new(), bind_group: None }
+        Self { entries, layout, in_kernel, bound: KeptBindGroup::default() }
     }
 
     /// Binds the lists and the strategy's resources. Call it after each [`LightLists::prepare`],
-    /// which may replace buffers.
+    /// which may replace buffers. The bind group stays the same while they do.
     pub fn bind(&mut self, gpu: &Gpu, lists: &LightLists, resources: &[wgpu::BindGroupEntry<'_>]) {
         let mut entries = vec![entry(0, lists.lists()), entry(1, lists.entries())];
         if self.in_kernel {
-            entries.extend([entry(2, lists.counters()), entry(3, lists.uniform())]);
+            entries.push(entry(3, lists.uniform()));
         }
         entries.extend_from_slice(resources);
-        let bound = entries.iter().filter_map(|e| Some((e.binding, Resource::of(&e.resource)?)));
-        self.bound = bound.collect();
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("lists"),
-            layout: &self.layout,
-            entries: &entries,
-        }));
+        self.bound.bind(gpu, "lists", &self.layout, &entries);
     }
 
     /// The layout.
@@ -117,7 +73,7 @@ impl ListsBindings {
 
     /// The bind group; `None` before the first [`bind`](Self::bind).
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bind_group.as_ref()
+        self.bound.get()
     }
 
     /// The entries of the layout for a renderer's own bind group, in which these bindings begin at `first_binding`.
@@ -137,12 +93,6 @@ impl ListsBindings {
 
     /// What [`bind`](Self::bind) bound last, for such a bind group; empty before the first call.
     pub fn bind_entries(&self, first_binding: u32) -> Vec<wgpu::BindGroupEntry<'_>> {
-        self.bound
-            .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry {
-                binding: first_binding.saturating_add(*binding),
-                resource: resource.binding(),
-            })
-            .collect()
+        self.bound.entries(first_binding)
     }
 }

@@ -11,7 +11,9 @@
 //! Bounds made from these depths hold other parts of the scene. In reflections, tiles and clusters lack the lights of
 //! what they show. Views without an oblique near plane stay right.
 
-use crate::{AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, View};
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes, View,
+};
 
 /// A strategy that makes its lists as if the near plane were perpendicular to the viewing axis. Shading rebuilds
 /// samples as the view says.
@@ -42,6 +44,14 @@ impl Assignment for PlainDepth {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(self.inner.for_view(gpu)?)))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

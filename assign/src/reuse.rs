@@ -1,6 +1,9 @@
 //! Reuse of lists over several frames: the `update` axis.
 
-use crate::{AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, SampleDomain};
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
+    SampleDomain,
+};
 
 /// A strategy that makes its lists only every `frames` frames.
 ///
@@ -60,6 +63,14 @@ impl Assignment for Reuse {
         self.inner.is_view_bound()
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(self.inner.for_view(gpu)?, self.frames)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         self.inner.prepare(gpu, frame)?;
         let lists = self.inner.lists();
@@ -84,6 +95,9 @@ impl Assignment for Reuse {
         let age = self.age.map_or(0, |age| (age + 1) % self.frames);
         if age == 0 {
             self.inner.record(frame, passes);
+        } else {
+            // The look-up reads old lists for the new view.
+            self.inner.lists_mut().record_writes(passes.encoder());
         }
         self.age = Some(age);
     }

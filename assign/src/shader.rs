@@ -9,6 +9,7 @@ use wesl::{
 use crate::{
     AssignError, Gpu, GroupShape, LightKinds, LightReader, Slots, Storage, StrategyWesl,
     compiled::ModuleKey,
+    hitches::Counted,
     light_reader::BOUNDS_BOX_WESL,
     link_errors,
     plain_wgsl::{self, PrefixMangler},
@@ -254,14 +255,14 @@ impl<'a> Shader<'a> {
         };
         gpu.compiled.module(key, || {
             let source = self.link(root)?;
-            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-            let module = make(wgpu::ShaderModuleDescriptor {
+            Counted::add(&gpu.counted.modules, 1);
+            let descriptor = wgpu::ShaderModuleDescriptor {
                 label: Some(root),
                 source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
-            match pollster::block_on(scope.pop()) {
-                None => Ok(module),
-                Some(error) => {
+            };
+            match gpu.scoped(wgpu::ErrorFilter::Validation, || make(descriptor)) {
+                (module, None) => Ok(module),
+                (_, Some(error)) => {
                     Err(AssignError::Shader { module: root.to_owned(), reason: error.to_string() })
                 }
             }

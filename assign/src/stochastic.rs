@@ -32,8 +32,8 @@
 //! - Area lights keep their ranges.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup,
-    MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
+    Lookup, MIN_RANGE_M, Needs, Passes,
 };
 
 /// A strategy that makes its lists for random ranges. Shading must know the threshold, and [`Frame::seed`].
@@ -107,6 +107,14 @@ impl Assignment for Stochastic {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.threshold)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -21,15 +21,16 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, Lookup, ModelBox,
-    Needs, Passes, SampleDomain, View,
+    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, LightTraits, Lookup,
+    ModelBox, Needs, Passes, SampleDomain, View, check_limits, storage_buffer_limits,
 };
 
 /// The pool has room for so many times the entries of one frame.
 const ROOM: u32 = 3;
 
-/// Storage buffers that the pass `touch` takes with the strategies of this workspace.
-const STORAGE_BUFFERS: u32 = 10;
+/// Storage buffers that the pass `touch` takes with the strategies of this workspace: three of lights, records and
+/// entries, the strategy's two, the touched groups, the changes, and the live groups.
+const STORAGE_BUFFERS: u32 = 9;
 
 /// A strategy that makes only those lists again that a changed light touches, and loses no light.
 pub struct Touched {
@@ -60,8 +61,9 @@ impl Touched {
     /// # Errors
     ///
     /// [`AssignError::Unsupported`] if the strategy does not [update groups](Assignment::updates_groups), or
-    /// reads normals or triangles, by which a list may change though no volume does; if lists have
-    /// [trees](crate::Storage::Trees); or if the device has too few storage buffers.
+    /// reads normals or triangles, by which a list may change though no volume does, or if lists have
+    /// [trees](crate::Storage::Trees); and [`AssignError::Limit`] on a device with less than the
+    /// [required limits](Self::required_limits).
     pub fn new(gpu: &Gpu, mut inner: Box<dyn Assignment>) -> Result<Self, AssignError> {
         let needs = inner.needs();
         if !inner.updates_groups() || needs.normals || needs.triangles {
@@ -74,19 +76,15 @@ impl Touched {
             });
         }
         inner.lists().check_later_frames(inner.id(), "touched")?;
-        let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
-        if has < STORAGE_BUFFERS {
-            return Err(AssignError::Unsupported {
-                strategy: inner.id(),
-                asked: "touched".into(),
-                reason: format!(
-                    "it needs {STORAGE_BUFFERS} storage buffers in a shader stage, and the device has {has}"
-                ),
-            });
-        }
+        check_limits(gpu, &format!("{}/touched", inner.id()), &Self::required_limits())?;
         inner.lists_mut().leave_room(ROOM);
         let changes = LightChanges::new(gpu)?;
         Ok(Self { inner, changes, made: None, models: Vec::new(), next: None })
+    }
+
+    /// What it needs of a device, with the strategies of this workspace: one storage buffer more than WebGPU promises.
+    pub fn required_limits() -> wgpu::Limits {
+        storage_buffer_limits(STORAGE_BUFFERS)
     }
 }
 
@@ -101,6 +99,15 @@ impl Assignment for Touched {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.changes.compile(gpu, lights.kinds)?;
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -1,9 +1,9 @@
 //! The groups that a changed light touches, which the GPU finds (`touched.wesl`).
 
 use crate::{
-    AssignError, Gpu, Groups, LightChanges, LiveGroups, Passes, Shader,
+    AssignError, Gpu, Groups, KeptBindGroup, LightChanges, LiveGroups, Passes, Shader,
     entries::{entry, storage_entry},
-    kernel::{MAX_WORKGROUPS, bind_entries, pipeline},
+    kernel::{MAX_WORKGROUPS, pipeline},
 };
 
 /// The groups that get new lists when only some lights changed.
@@ -13,7 +13,7 @@ pub(crate) struct TouchedGroups {
     layout: wgpu::BindGroupLayout,
     start: wgpu::ComputePipeline,
     touch: wgpu::ComputePipeline,
-    bind_group: Option<wgpu::BindGroup>,
+    bound: KeptBindGroup,
     dispatch: Dispatch,
 }
 
@@ -70,7 +70,7 @@ impl TouchedGroups {
             start: kernel("start_update"),
             touch: kernel("touch_groups"),
             layout,
-            bind_group: None,
+            bound: KeptBindGroup::default(),
             dispatch: Dispatch::Workgroups(0),
         })
     }
@@ -87,7 +87,7 @@ impl TouchedGroups {
         if let Groups::Live { live, .. } = groups {
             entries.push(entry(2, live.buffer()));
         }
-        self.bind_group = Some(bind_entries(gpu, &self.layout, &entries));
+        self.bound.bind(gpu, "touched groups", &self.layout, &entries);
         self.dispatch = Dispatch::over(groups);
         Ok(())
     }
@@ -97,7 +97,7 @@ impl TouchedGroups {
         passes.compute("touch", &mut |pass| {
             pass.set_bind_group(0, groups[0], &[]);
             pass.set_bind_group(1, groups[1], &[]);
-            pass.set_bind_group(2, self.bind_group.as_ref(), &[]);
+            pass.set_bind_group(2, self.bound.get(), &[]);
             pass.set_pipeline(&self.start);
             pass.dispatch_workgroups(1, 1, 1);
             pass.set_pipeline(&self.touch);

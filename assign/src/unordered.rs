@@ -17,8 +17,8 @@
 //! renderer, where an atomic costs less than the order that it gives up.
 
 use crate::{
-    AssignError, Assignment, Frame, FrameBindings, Gpu, LightLists, ListsBindings, Lookup, Needs,
-    Passes, Shader, Storage, entries::uniform_entry, entry, kernel,
+    AssignError, Assignment, Frame, FrameBindings, Gpu, LightLists, LightTraits, ListsBindings,
+    Lookup, Needs, Passes, Shader, Storage, entries::uniform_entry, entry, kernel,
 };
 
 /// Bind group of the lists in the kernel.
@@ -29,6 +29,7 @@ pub struct Unordered {
     inner: Box<dyn Assignment>,
     frame: FrameBindings,
     lists: ListsBindings,
+    list_cap: Option<u32>,
     cap: wgpu::Buffer,
     pipeline: wgpu::ComputePipeline,
 }
@@ -69,7 +70,7 @@ impl Unordered {
         let buffer = gpu.uniform("shuffle", 16);
         let words = [cap.unwrap_or(u32::MAX), 0, 0, 0];
         gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        Ok(Self { inner, frame, lists, cap: buffer, pipeline })
+        Ok(Self { inner, frame, lists, list_cap: cap, cap: buffer, pipeline })
     }
 
     /// The kernel's linked WGSL.
@@ -95,9 +96,17 @@ impl Assignment for Unordered {
         self.inner.is_view_bound()
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.list_cap)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         self.inner.prepare(gpu, frame)?;
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, self.inner.lists_mut().writes_mut())?;
         let cap = entry(crate::FIRST_STRATEGY_BINDING, &self.cap);
         self.lists.bind(gpu, self.inner.lists(), &[cap]);
         Ok(())

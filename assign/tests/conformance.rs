@@ -63,6 +63,9 @@ impl Assignment for Picky {
     fn needs(&self) -> Needs {
         Needs { depth: true, normals: true, ..Needs::default() }
     }
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self { inner: self.inner.view(gpu)?, ..*self }))
+    }
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         let refuse = |asked: &str| {
             Err(AssignError::Unsupported {

@@ -91,6 +91,9 @@ impl Assignment for Blind {
     fn needs(&self) -> Needs {
         self.0.needs()
     }
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self(self.0.for_view(gpu)?)))
+    }
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         self.0.prepare(gpu, &Self::opaque(frame))
     }

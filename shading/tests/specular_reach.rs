@@ -147,6 +147,10 @@ impl Assignment for Claims {
         f32::INFINITY
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self(self.0.view(gpu)?)))
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         self.0.prepare(gpu, frame)
     }

@@ -90,7 +90,7 @@ impl VplBuffer {
     /// [`MAX_RSM_SIDE`](crate::MAX_RSM_SIDE), or if its textures are too small for the viewport. Also
     /// [`AssignError::View`], [`AssignError::TooLarge`] and [`AssignError::OutOfMemory`].
     pub fn prepare(&mut self, gpu: &Gpu, rsm: &Rsm<'_>) -> Result<(), AssignError> {
-        self.readback.poll(gpu);
+        self.readback.poll();
         let mut uniform = rsm.uniform()?;
         let texels = uniform.size[0] * uniform.size[1];
         let capacity = self.settings.limit.unwrap_or(texels).min(texels);
@@ -116,7 +116,7 @@ impl VplBuffer {
     /// Records `vpl-keep`, which writes the lights. Call it after the pass that fills the ranges.
     pub fn record_keep(&mut self, passes: &mut dyn Passes) {
         self.keep.record(passes, &self.counts);
-        self.readback.record(passes.encoder(), &self.counts);
+        self.readback.record(passes.encoder(), &self.counts, 0);
     }
 
     /// The most VPLs that fit: the length of every array.

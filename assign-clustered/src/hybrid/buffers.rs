@@ -45,9 +45,9 @@ impl Buffers {
         gpu: &Gpu,
         froxels: &FroxelsUniform,
         parts: HybridParts,
-        lists: &LightLists,
+        lists: &mut LightLists,
     ) -> Result<(), AssignError> {
-        gpu.queue.write_buffer(&self.parts, 0, bytes_of(&parts));
+        lists.writes_mut().write(&self.parts, 0, bytes_of(&parts))?;
         let masks = u64::from(froxels.tile_count()) * u64::from(parts.mask_words) * 4;
         let cursors = u64::from(froxels.froxel_count()) * 4;
         for (buffer, label, bytes) in [

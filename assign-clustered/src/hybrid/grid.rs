@@ -1,8 +1,9 @@
 //! HG as a strategy: its look-up, its lists and its passes.
 
 use assign::{
-    AssignError, Assignment, Frame, Gpu, LightLists, ListsBindings, Lookup, Needs, Passes,
-    SampleDomain, StrategyModule, entry, uniform_entry,
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, ListsBindings, Lookup, Needs,
+    Passes, SampleDomain, StrategyModule, check_limits, entry, storage_buffer_limits,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -34,6 +35,7 @@ impl HybridGrid {
         scatter: Scatter,
     ) -> Result<Self, AssignError> {
         size.check()?;
+        check_limits(gpu, "HG", &Self::required_limits())?;
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             size,
@@ -48,6 +50,24 @@ impl HybridGrid {
             passes: HybridPasses::new(gpu, scatter)?,
         })
     }
+
+    /// What the strategy needs of a device. `reserve` reads or writes records, entries, three buffers of cells and the
+    /// live cells; `count` reads three buffers of lights and writes three of cells.
+    pub fn required_limits() -> wgpu::Limits {
+        storage_buffer_limits(6)
+    }
+
+    /// The same strategy for another view: [`Assignment::for_view`].
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::OutOfMemory`] if the device has no memory left.
+    pub fn view(&self, gpu: &Gpu) -> Result<Self, AssignError> {
+        let mut view = Self::with_scatter(gpu, self.size, self.scatter)?;
+        view.lists.limit_as(&self.lists);
+        view.passes.share(&self.passes);
+        Ok(view)
+    }
 }
 
 impl Assignment for HybridGrid {
@@ -57,6 +77,14 @@ impl Assignment for HybridGrid {
 
     fn needs(&self) -> Needs {
         Needs { depth: true, ..Needs::default() }
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(self.view(gpu)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.passes.compile(gpu, lights.kinds).map(|_| ())
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -72,9 +100,9 @@ impl Assignment for HybridGrid {
             };
         froxels.surfaces_only = u32::from(depth.is_some());
         self.lists.prepare(gpu, frame.lights, froxels.froxel_count())?;
-        gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
+        self.lists.writes_mut().write(&self.froxels, 0, bytes_of(&froxels))?;
         self.look_up.bind(gpu, &self.lists, &[entry(FROXELS_BINDING, &self.froxels)]);
-        self.passes.prepare(gpu, frame, &froxels, &self.froxels, &self.lists, depth)
+        self.passes.prepare(gpu, frame, &froxels, &self.froxels, &mut self.lists, depth)
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {

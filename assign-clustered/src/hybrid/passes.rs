@@ -1,14 +1,14 @@
 //! The passes of HG: what they bind, and the order in which they run.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, LightKinds, LightLists, ListsBindings, Passes,
-    SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Frame, FrameBindings, Gpu, KeptBindGroup, LightKinds, LightLists, ListsBindings,
+    Passes, SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use super::{
     buffers::{Buffers, Sizes},
     parts::HybridParts,
-    scatter::{Scatter, ScatterPipeline},
+    scatter::{Scatter, ScatterPipeline, Target},
     shader::{HybridShader, LISTS_GROUP},
 };
 use crate::froxels::{FROXELS_BINDING, FroxelsUniform};
@@ -25,20 +25,23 @@ pub(crate) struct HybridPasses {
     frame: FrameBindings,
     /// The cells without the lists: what `occupancy` and `scatter` read and write.
     cells_layout: wgpu::BindGroupLayout,
-    cells_bind_group: Option<wgpu::BindGroup>,
+    bound_cells: KeptBindGroup,
     lists: ListsBindings,
     depth_layout: wgpu::BindGroupLayout,
-    depth_bind_group: Option<wgpu::BindGroup>,
+    bound_depth: KeptBindGroup,
     /// The live cells: first as `clear` and `reserve_lists` write them, then as `sort` reads them.
     live_layouts: [wgpu::BindGroupLayout; 2],
-    live_bind_groups: Option<[wgpu::BindGroup; 2]>,
+    bound_live: [KeptBindGroup; 2],
     occupancy: wgpu::ComputePipeline,
     clear: wgpu::ComputePipeline,
     reserve: wgpu::ComputePipeline,
     sort: wgpu::ComputePipeline,
     scatter: Scatter,
-    /// The kinds of lights that it is compiled for, and the pipeline.
-    scatter_pipeline: Option<(LightKinds, ScatterPipeline)>,
+    /// One pipeline per kind of lights that came up, and the place of that of the prepared frame.
+    scatter_pipelines: Vec<(LightKinds, ScatterPipeline)>,
+    scatter_pipeline: usize,
+    /// What the rasteriser draws to.
+    target: Target,
     buffers: Buffers,
     sizes: Sizes,
 }
@@ -75,14 +78,16 @@ impl HybridPasses {
             sort: kernel::pipeline(gpu, &sort, "sort_lists", &sort_groups),
             frame,
             cells_layout,
-            cells_bind_group: None,
+            bound_cells: KeptBindGroup::default(),
             lists: bound_lists,
             depth_layout,
-            depth_bind_group: None,
+            bound_depth: KeptBindGroup::default(),
             live_layouts,
-            live_bind_groups: None,
+            bound_live: Default::default(),
             scatter,
-            scatter_pipeline: None,
+            scatter_pipelines: Vec::new(),
+            scatter_pipeline: 0,
+            target: Target::new(gpu),
             buffers: Buffers::new(gpu)?,
             sizes: Sizes::default(),
         })
@@ -96,24 +101,35 @@ impl HybridPasses {
         frame: &Frame<'_>,
         froxels: &FroxelsUniform,
         uniform: &wgpu::Buffer,
-        lists: &LightLists,
+        lists: &mut LightLists,
         depth: Option<&wgpu::TextureView>,
     ) -> Result<(), AssignError> {
-        self.frame.update(gpu, frame)?;
+        self.frame.update_in(gpu, frame, lists.writes_mut())?;
         let parts = HybridParts::new(froxels);
         self.buffers.grow(gpu, froxels, parts, lists)?;
         self.bind(gpu, uniform, lists, depth);
         self.sizes = Sizes::new(frame, froxels, parts, &self.buffers);
-        let kinds = frame.lights.kinds();
-        if self.scatter_pipeline.as_ref().is_none_or(|(known, _)| *known != kinds) {
-            let layouts = [self.frame.layout(), &self.cells_layout];
-            let pipeline = ScatterPipeline::new(gpu, self.scatter, kinds, layouts)?;
-            self.scatter_pipeline = Some((kinds, pipeline));
-        }
-        if let Some((_, pipeline)) = &mut self.scatter_pipeline {
-            pipeline.resize(gpu, froxels);
+        self.scatter_pipeline = self.compile(gpu, frame.lights.kinds())?;
+        if self.scatter == Scatter::Raster {
+            self.target.resize(gpu, [froxels.counts[0], froxels.counts[1]]);
         }
         Ok(())
+    }
+
+    /// Compiles the pipeline for kinds of lights the first time. Returns its place.
+    pub(crate) fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<usize, AssignError> {
+        if let Some(place) = self.scatter_pipelines.iter().position(|(known, _)| *known == kinds) {
+            return Ok(place);
+        }
+        let layouts = [self.frame.layout(), &self.cells_layout];
+        let pipeline = ScatterPipeline::new(gpu, self.scatter, kinds, layouts)?;
+        self.scatter_pipelines.push((kinds, pipeline));
+        Ok(self.scatter_pipelines.len() - 1)
+    }
+
+    /// Shares the pipelines of the same passes for another view.
+    pub(crate) fn share(&mut self, other: &Self) {
+        self.scatter_pipelines = other.scatter_pipelines.clone();
     }
 
     fn bind(
@@ -133,12 +149,13 @@ impl HybridPasses {
         self.lists.bind(gpu, lists, &cells);
         let uniforms = [entry(3, lists.uniform()), entry(PARTS, parts)];
         let cells = [&uniforms, &cells[..]].concat();
-        self.cells_bind_group = Some(kernel::bind_entries(gpu, &self.cells_layout, &cells));
-        let [written, read] = &self.live_layouts;
-        self.live_bind_groups =
-            Some([written, read].map(|layout| kernel::bind_buffers(gpu, layout, &[live.buffer()])));
-        self.depth_bind_group =
-            depth.map(|view| kernel::bind_entries(gpu, &self.depth_layout, &[texture(0, view)]));
+        self.bound_cells.bind(gpu, "hybrid cells", &self.cells_layout, &cells);
+        for (bound, layout) in self.bound_live.iter_mut().zip(&self.live_layouts) {
+            bound.bind(gpu, "hybrid live", layout, &[entry(0, live.buffer())]);
+        }
+        if let Some(view) = depth {
+            self.bound_depth.bind(gpu, "hybrid depth", &self.depth_layout, &[texture(0, view)]);
+        }
     }
 
     /// Records the passes: inside the clock, after [`prepare`](Self::prepare).
@@ -151,7 +168,7 @@ impl HybridPasses {
             pass.dispatch_workgroups(sizes.clear, 1, 1);
             if reads_depth {
                 self.bind_cells(pass);
-                pass.set_bind_group(2, self.depth_bind_group.as_ref(), &[]);
+                pass.set_bind_group(2, self.bound_depth.get(), &[]);
                 pass.set_pipeline(&self.occupancy);
                 pass.dispatch_workgroups(sizes.blocks[0], sizes.blocks[1], 1);
             }
@@ -165,7 +182,7 @@ impl HybridPasses {
         self.add_lights("fill", frame, passes);
         passes.compute("sort", &mut |pass| {
             self.bind_lists(pass);
-            pass.set_bind_group(2, self.live_bind_groups.as_ref().map(|[_, read]| read), &[]);
+            pass.set_bind_group(2, self.bound_live[1].get(), &[]);
             pass.set_pipeline(&self.sort);
             pass.dispatch_workgroups_indirect(self.buffers.live.buffer(), 0);
         });
@@ -173,27 +190,27 @@ impl HybridPasses {
 
     /// Bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
-        let target = self.scatter_pipeline.as_ref().map_or(0, |(_, pipeline)| pipeline.bytes());
+        let target = if self.scatter == Scatter::Raster { self.target.bytes() } else { 0 };
         self.buffers.bytes() + self.frame.bytes() + target
     }
 
     /// The pass that adds lights to cells. It counts them first, and places them after `reserve`.
     fn add_lights(&self, name: &str, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        if let Some((_, pipeline)) = &self.scatter_pipeline {
-            let bound = [self.frame.bind_group(), self.cells_bind_group.as_ref()];
-            pipeline.record(name, frame.lights.count(), self.sizes.scatter, bound, passes);
+        if let Some((_, pipeline)) = self.scatter_pipelines.get(self.scatter_pipeline) {
+            let bound = [self.frame.bind_group(), self.bound_cells.get()];
+            let lights = frame.lights.count();
+            pipeline.record(name, lights, self.sizes.scatter, (bound, &self.target), passes);
         }
     }
 
     fn bind_cells(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, self.frame.bind_group(), &[]);
-        pass.set_bind_group(LISTS_GROUP, self.cells_bind_group.as_ref(), &[]);
+        pass.set_bind_group(LISTS_GROUP, self.bound_cells.get(), &[]);
     }
 
     fn bind_lists(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(LISTS_GROUP, self.lists.bind_group(), &[]);
-        let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
-        pass.set_bind_group(2, live, &[]);
+        pass.set_bind_group(2, self.bound_live[0].get(), &[]);
     }
 }
 

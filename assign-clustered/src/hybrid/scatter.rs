@@ -3,7 +3,6 @@
 use assign::{AssignError, Gpu, LightKinds, Passes, kernel};
 
 use super::shader::{HybridShader, LISTS_GROUP};
-use crate::froxels::FroxelsUniform;
 
 /// What walks the tiles of each light's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -47,14 +46,18 @@ impl Scatter {
 }
 
 /// The pipeline that adds lights to cells.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum ScatterPipeline {
     Compute(wgpu::ComputePipeline),
-    Raster { pipeline: wgpu::RenderPipeline, target: wgpu::TextureView },
+    Raster(wgpu::RenderPipeline),
 }
 
 /// What a scatter pass binds: the frame and the cells.
 pub(super) type Bound<'a> = [Option<&'a wgpu::BindGroup>; 2];
+
+/// The raster target: one pixel per tile.
+#[derive(Debug)]
+pub(super) struct Target(wgpu::TextureView);
 
 impl ScatterPipeline {
     /// Compiles it for kinds of lights. `layouts` are those of the frame and of the cells.
@@ -71,22 +74,9 @@ impl ScatterPipeline {
             }
             Scatter::Raster => {
                 let module = HybridShader::Raster.create(gpu, kinds)?;
-                Self::Raster {
-                    pipeline: raster_pipeline(gpu, &module, layouts),
-                    target: target(gpu, [1; 2]),
-                }
+                Self::Raster(raster_pipeline(gpu, &module, layouts))
             }
         })
-    }
-
-    /// Gives the raster target one pixel per tile.
-    pub(super) fn resize(&mut self, gpu: &Gpu, froxels: &FroxelsUniform) {
-        let [width, height, _] = froxels.counts;
-        if let Self::Raster { target: view, .. } = self
-            && (view.texture().width(), view.texture().height()) != (width, height)
-        {
-            *view = target(gpu, [width, height]);
-        }
     }
 
     /// Records a pass over so many lights. `workgroups` are those of the compute pipeline.
@@ -95,7 +85,7 @@ impl ScatterPipeline {
         name: &str,
         lights: u32,
         workgroups: [u32; 2],
-        bound: Bound<'_>,
+        (bound, target): (Bound<'_>, &Target),
         passes: &mut dyn Passes,
     ) {
         match self {
@@ -105,9 +95,9 @@ impl ScatterPipeline {
                 pass.set_pipeline(pipeline);
                 pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
             }),
-            Self::Raster { pipeline, target } => {
+            Self::Raster(pipeline) => {
                 let attachment = wgpu::RenderPassColorAttachment {
-                    view: target,
+                    view: &target.0,
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations {
@@ -128,15 +118,22 @@ impl ScatterPipeline {
             }
         }
     }
+}
 
-    /// Bytes of the raster target.
-    pub(super) fn bytes(&self) -> u64 {
-        match self {
-            Self::Compute(_) => 0,
-            Self::Raster { target, .. } => {
-                u64::from(target.texture().width()) * u64::from(target.texture().height())
-            }
+impl Target {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        Self(target(gpu, [1; 2]))
+    }
+
+    /// Gives it one pixel per tile.
+    pub(super) fn resize(&mut self, gpu: &Gpu, tiles: [u32; 2]) {
+        if [self.0.texture().width(), self.0.texture().height()] != tiles {
+            self.0 = target(gpu, tiles);
         }
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        u64::from(self.0.texture().width()) * u64::from(self.0.texture().height())
     }
 }
 
@@ -164,7 +161,7 @@ fn raster_pipeline(
         bind_group_layouts: &layouts.map(Some),
         immediate_size: 0,
     });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("hybrid raster"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {

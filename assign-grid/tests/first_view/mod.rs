@@ -37,6 +37,10 @@ impl Assignment for FirstView {
         self.inner.needs()
     }
 
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(self.inner.for_view(gpu)?)))
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         let first = self.first.take().unwrap_or_else(|| (*frame.view, frame.depth.cloned()));
         self.inner.prepare(gpu, &frame_of(&first, frame, frame.samples))?;

@@ -5,7 +5,7 @@ use bytemuck::bytes_of;
 pub use super::fault::Fault;
 use crate::{
     AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightNode, LightShape,
-    Lookup, Needs, Passes, Shader, StrategyModule,
+    LightTraits, Lookup, Needs, Passes, Shader, StrategyModule,
     kernel::{self, Slot},
 };
 
@@ -132,7 +132,7 @@ impl Faulty {
         ];
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&parameters));
         self.record_count = groups + 1 - first_record;
-        let buffers = [lists.lists(), lists.entries(), lists.counters(), &self.uniform];
+        let buffers = [lists.lists(), lists.entries(), &self.uniform];
         self.bind_group = Some(kernel::bind_buffers(gpu, &self.layout, &buffers));
     }
 }
@@ -144,6 +144,14 @@ impl Assignment for Faulty {
 
     fn needs(&self) -> Needs {
         self.inner.needs()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.fault)?))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -230,7 +238,7 @@ fn plant_pipeline(
     let module = Shader::new(0)
         .module("package::fault", include_str!("fault.wesl"))
         .create(gpu, "package::fault")?;
-    let slots = [Slot::Write, Slot::Write, Slot::Write, Slot::Uniform];
+    let slots = [Slot::Write, Slot::Write, Slot::Uniform];
     let layout = kernel::layout(gpu, "fault", wgpu::ShaderStages::COMPUTE, &slots);
     Ok((kernel::pipeline(gpu, &module, "plant", &[&layout]), layout))
 }

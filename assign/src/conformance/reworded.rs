@@ -1,8 +1,8 @@
 //! Negative controls of a strategy's own shader: the same strategy with other WESL.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, StrategyModule,
-    StrategyWesl,
+    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
+    StrategyModule, StrategyWesl,
 };
 
 /// A strategy whose look-up has other text, to plant faults in it.
@@ -46,6 +46,14 @@ impl Assignment for Reworded {
 
     fn is_view_bound(&self) -> bool {
         self.inner.is_view_bound()
+    }
+
+    fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Self { inner: self.inner.for_view(gpu)?, module: self.module }))
+    }
+
+    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
+        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -3,7 +3,9 @@
 use bytemuck::cast_slice;
 use glam::Vec3;
 
-use crate::{Light, LightEmission, LightFault, LightKinds, LightSphere};
+use crate::{
+    AssignError, Light, LightEmission, LightFault, LightKinds, LightShape, LightSphere, MIN_RANGE_M,
+};
 
 /// A faulty light that was omitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,19 +35,26 @@ pub(super) struct Given {
 }
 
 impl Given {
-    /// The sound lights in the renderer's order.
-    pub(super) fn new(all: &[Light]) -> Self {
+    /// The sound lights in the renderer's order. With `keeps_indices`, dark lights take the places of all others.
+    pub(super) fn new(all: &[Light], keeps_indices: bool) -> Self {
         let mut lights = Vec::with_capacity(all.len());
         let mut indices = Vec::with_capacity(all.len());
         let mut rejected = Vec::new();
         for (index, light) in all.iter().enumerate() {
-            match light.check() {
-                Ok(()) => {
-                    lights.push(*light);
-                    indices.push(index as u32);
-                }
-                Err(fault) => rejected.push(RejectedLight { index, fault }),
+            let fault = light.check().err();
+            // Where indices stay, a dark light is in nobody's way.
+            if let Some(fault) = fault.filter(|fault| !keeps_indices || *fault != LightFault::DARK)
+            {
+                rejected.push(RejectedLight { index, fault });
             }
+            let is_kept = keeps_indices || fault.is_none();
+            if is_kept {
+                lights.push(*light);
+                indices.push(index as u32);
+            }
+        }
+        if keeps_indices {
+            darken(&mut lights);
         }
         let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
         let support = |l: &Light| (l.position - l.radius_m(), l.position + l.radius_m());
@@ -63,6 +72,29 @@ impl Given {
     pub(super) fn reorder(&mut self, order: &[u32]) {
         self.lights = order.iter().map(|&ix| self.lights[ix as usize]).collect();
         self.indices = order.iter().map(|&ix| self.indices[ix as usize]).collect();
+    }
+}
+
+/// Checks the number of lights.
+pub(super) fn check_count(lights: usize) -> Result<(), AssignError> {
+    if lights <= MAX_LIGHTS {
+        return Ok(());
+    }
+    Err(AssignError::Parameter {
+        field: "lights".into(),
+        value: lights.to_string(),
+        accepted: format!("at most {MAX_LIGHTS}"),
+    })
+}
+
+/// Makes lights that are faulty or of intensity 0 into dark ones that reach nothing. They stand where the first sound
+/// light stands, so that no box grows because of them.
+fn darken(lights: &mut [Light]) {
+    let is_sound = |light: &&Light| light.check().is_ok();
+    let position = lights.iter().find(is_sound).map_or(Vec3::ZERO, |light| light.position);
+    for light in lights.iter_mut().filter(|light| light.check().is_err()) {
+        let shape = LightShape::Point;
+        *light = Light { position, range_m: MIN_RANGE_M, intensity: Vec3::ZERO, shape };
     }
 }
 

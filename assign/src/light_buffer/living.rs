@@ -116,11 +116,12 @@ impl Living {
         let [spheres, emissions, shapes] = records.bytes();
         let fits = self.sorter.as_ref().is_some_and(|(sorter, buffers)| {
             matches!(self.source, Some(Source::Cpu { .. }))
-                && sorter.serves(count, given.kinds, buffers)
+                && sorter.serves(count, buffers)
                 && buffers.shapes.size() >= shapes.len() as u64
         });
         let mut known = Records::default();
         if fits {
+            self.compile(gpu, given.kinds)?;
             if let Some(Source::Cpu { uploaded }) = self.source.take() {
                 known = uploaded;
             }
@@ -168,12 +169,14 @@ impl Living {
         let fits = self.sorter.as_ref().is_some_and(|(sorter, _)| {
             matches!(self.source, Some(Source::Gpu { .. }))
                 && sorter.capacity() == lights.capacity
-                && sorter.serves(lights.capacity, lights.kinds, &buffers)
+                && sorter.serves(lights.capacity, &buffers)
         });
         if !fits {
             let sorter = LightSorter::new(gpu, lights.capacity, lights.kinds, buffers.clone())?;
             self.sorter = Some((sorter, buffers));
             self.age = None;
+        } else {
+            self.compile(gpu, lights.kinds)?;
         }
         self.source = Some(Source::Gpu {
             count: lights.count.clone(),
@@ -193,6 +196,20 @@ impl Living {
             sorter.prepare(gpu, lights.bounds, largest_m, sorts);
         }
         Ok(())
+    }
+
+    /// Has frames take lights of some kinds. Compiles their kernels the first time.
+    pub(super) fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile(gpu, kinds))
+    }
+
+    /// Compiles kernels for other kinds of lights than those of the frame.
+    pub(super) fn compile_ahead(
+        &mut self,
+        gpu: &Gpu,
+        kinds: LightKinds,
+    ) -> Result<(), AssignError> {
+        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kinds))
     }
 
     /// Whether the next frame sorts `lights` lights in a box. It does so when it is time, and if the frame

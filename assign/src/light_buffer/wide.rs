@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{LightBuffer, Living};
 use crate::{
-    AssignError, Gpu, LightKinds, Passes,
+    AssignError, FrameWrites, Gpu, LightKinds, Passes,
     light_sorter::{BoxInput, BoxKernels, BoxPass, OrderUniform, SlotState},
 };
 
@@ -55,12 +55,13 @@ impl WideLights {
 
 impl LightBuffer {
     /// Takes the slots of another buffer, whose lights' balls are grown by `reach_m`. Cones and outlines
-    /// become balls. [`record`](Self::record) then makes them from what the other buffer holds on the GPU.
+    /// become balls. After `writes` are recorded, [`record`](Self::record) makes them from what the other buffer holds on the GPU.
     pub(crate) fn update_wide(
         &mut self,
         gpu: &Gpu,
         source: &LightBuffer,
         reach_m: f32,
+        writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
         let capacity = source.capacity();
         let mut wide = match self.wide.take() {
@@ -73,14 +74,14 @@ impl LightBuffer {
             Some((sorter, _)) => sorter.state().clone(),
             None => {
                 let slots = SlotState { slots: source.count(), ..SlotState::default() };
-                gpu.queue.write_buffer(&wide.state, 0, bytemuck::bytes_of(&slots));
+                writes.write(&wide.state, 0, bytemuck::bytes_of(&slots))?;
                 wide.state.clone()
             }
         };
         let LightBuffer { spheres, emissions, shapes, .. } = source;
         let order = &wide.order;
         wide.boxes.bind(gpu, BoxInput { spheres, emissions, shapes, state: &state, order });
-        wide.boxes.prepare(gpu, OrderUniform { reach_m, ..OrderUniform::default() });
+        wide.boxes.prepare_in(writes, OrderUniform { reach_m, ..OrderUniform::default() })?;
         self.spheres = wide.boxes.spheres.clone();
         self.nodes = wide.boxes.nodes.clone();
         self.emissions = emissions.clone();

@@ -5,7 +5,8 @@ use super::{
     uniform::OrderUniform,
 };
 use crate::{
-    AssignError, Gpu, Passes,
+    AssignError, FrameWrites, Gpu, KeptBindGroup, LightKinds, Passes,
+    entries::entry,
     kernel::{bind_buffers, workgroups},
     light_nodes::{LightNode, NodeLevels},
 };
@@ -27,13 +28,16 @@ pub(crate) struct BoxInput<'a> {
 pub(crate) struct BoxPass {
     pub(crate) capacity: u32,
     pub(crate) levels: NodeLevels,
-    pub(crate) kernels: BoxKernels,
+    /// The kernels of the frame.
+    kernels: BoxKernels,
+    /// Those of every kind of lights that came up.
+    known: Vec<BoxKernels>,
     pub(crate) spheres: wgpu::Buffer,
     pub(crate) emissions: wgpu::Buffer,
     pub(crate) nodes: wgpu::Buffer,
     uniform: wgpu::Buffer,
     /// Bind groups 0 and 1.
-    frame: Option<wgpu::BindGroup>,
+    frame: KeptBindGroup,
     boxes: wgpu::BindGroup,
 }
 
@@ -49,31 +53,75 @@ impl BoxPass {
         let nodes = gpu.storage("light nodes", u64::from(levels.total.max(1)) * node_bytes)?;
         let boxes = bind_buffers(gpu, &kernels.layout, &[&spheres, &emissions, &nodes]);
         let uniform = gpu.uniform("light order", size_of::<OrderUniform>() as u64);
-        let frame = None;
-        Ok(Self { capacity, levels, kernels, spheres, emissions, nodes, uniform, frame, boxes })
+        let frame = KeptBindGroup::default();
+        let known = vec![kernels.clone()];
+        Ok(Self {
+            capacity,
+            levels,
+            kernels,
+            known,
+            spheres,
+            emissions,
+            nodes,
+            uniform,
+            frame,
+            boxes,
+        })
+    }
+
+    /// Has frames copy lights of some kinds from the given ones. Compiles the kernels the first time.
+    pub(crate) fn compile(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<(), AssignError> {
+        self.kernels = self.find(gpu, kinds)?;
+        Ok(())
+    }
+
+    /// The kernels for some kinds of lights. They are compiled once.
+    pub(crate) fn find(&mut self, gpu: &Gpu, kinds: LightKinds) -> Result<BoxKernels, AssignError> {
+        if let Some(known) = self.known.iter().find(|kernels| kernels.kinds == kinds) {
+            return Ok(known.clone());
+        }
+        let kernels = BoxKernels::in_order(gpu, kinds)?;
+        self.known.push(kernels.clone());
+        Ok(kernels)
     }
 
     /// Binds what the kernels read.
     pub(crate) fn bind(&mut self, gpu: &Gpu, input: BoxInput<'_>) {
         let BoxInput { spheres, emissions, shapes, state, order } = input;
         let buffers = [&self.uniform, spheres, emissions, shapes, state, order];
-        self.frame = Some(bind_buffers(gpu, &frame_layout(gpu), &buffers));
+        let mut binding = 0..;
+        let entries = buffers.map(|buffer| entry(binding.next().unwrap_or_default(), buffer));
+        self.frame.bind(gpu, "light order", &frame_layout(gpu), &entries);
     }
 
     /// Bind group 0 of all kernels of the order.
     pub(crate) fn frame(&self) -> Option<&wgpu::BindGroup> {
-        self.frame.as_ref()
+        self.frame.get()
     }
 
-    /// Uploads a frame's parameters.
+    /// Uploads a frame's parameters through the queue.
     pub(crate) fn prepare(&self, gpu: &Gpu, frame: OrderUniform) {
-        let frame = OrderUniform {
+        let frame = self.sized(frame);
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&frame));
+    }
+
+    /// Uploads a frame's parameters where `writes` are recorded.
+    pub(crate) fn prepare_in(
+        &self,
+        writes: &mut FrameWrites,
+        frame: OrderUniform,
+    ) -> Result<(), AssignError> {
+        let frame = self.sized(frame);
+        writes.write(&self.uniform, 0, bytemuck::bytes_of(&frame))
+    }
+
+    fn sized(&self, frame: OrderUniform) -> OrderUniform {
+        OrderUniform {
             capacity: self.capacity,
             first_parent: self.levels.first_parent,
             first_grandparent: self.levels.first_grandparent,
             ..frame
-        };
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&frame));
+        }
     }
 
     /// Records the pass.

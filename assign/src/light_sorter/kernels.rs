@@ -29,7 +29,7 @@ fn boxes_shader(kinds: LightKinds, is_wide: bool) -> Shader<'static> {
 }
 
 /// The pipelines of the pass `boxes` for some kinds of lights.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct BoxKernels {
     pub(crate) kinds: LightKinds,
     pub(super) is_wide: bool,

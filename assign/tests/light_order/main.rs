@@ -5,6 +5,7 @@
 
 mod boxes;
 mod faults;
+mod indices;
 mod motion;
 mod own;
 mod records;

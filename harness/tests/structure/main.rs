@@ -15,6 +15,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 mod circles;
+mod counted;
 mod module;
 mod tokens;
 
