@@ -212,8 +212,7 @@ impl Gpu {
     /// Maps a staging buffer after its copy was submitted, and returns its bytes.
     pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, AssignError> {
         let (sender, receiver) = std::sync::mpsc::channel();
-        self.counted.add_map(staging.size());
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        self.counted.map(staging, None, move |result| {
             // The receiver lives until the wait below returns.
             let _ = sender.send(result);
         });

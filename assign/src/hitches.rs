@@ -60,6 +60,26 @@ impl Counted {
         counter.fetch_add(number, Ordering::Relaxed);
     }
 
+    /// Maps a whole staging buffer for reading: at once, or as soon as an encoder is submitted. Every map goes through
+    /// here. A map at once is counted at once, and other maps when their [value is taken](Self::add_map).
+    pub(crate) fn map(
+        &self,
+        staging: &wgpu::Buffer,
+        encoder: Option<&wgpu::CommandEncoder>,
+        done: impl FnOnce(Result<(), wgpu::BufferAsyncError>) + Send + 'static,
+    ) {
+        match encoder {
+            None => {
+                self.add_map(staging.size());
+                staging.map_async(wgpu::MapMode::Read, .., done);
+            }
+            Some(encoder) => {
+                encoder.map_buffer_on_submit(staging, wgpu::MapMode::Read, .., done);
+            }
+        }
+    }
+
+    /// Counts a map of so many bytes.
     pub(crate) fn add_map(&self, bytes: u64) {
         Self::add(&self.maps, 1);
         Self::add(&self.map_bytes, bytes);

@@ -74,10 +74,9 @@ impl<T: Pod> Readback<T> {
         self.poll();
         let Some(slot) = self.slots.iter_mut().find(|slot| slot.copy.is_none()) else { return };
         encoder.copy_buffer_to_buffer(source, offset, &slot.buffer, 0, slot.buffer.size());
-        self.counted.add_map(slot.buffer.size());
         let state = Arc::new(AtomicU8::new(PENDING));
         let ending = Ending(Arc::clone(&state));
-        encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |result| {
+        self.counted.map(&slot.buffer, Some(encoder), move |result| {
             ending.0.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
         });
         self.recorded += 1;
@@ -94,6 +93,7 @@ impl<T: Pod> Readback<T> {
                 continue;
             }
             if state == MAPPED {
+                self.counted.add_map(buffer.size());
                 let is_newer = self.latest.as_ref().is_none_or(|(newest, _)| *newest < *number);
                 if is_newer && let Ok(view) = buffer.get_mapped_range(..) {
                     self.latest = Some((*number, bytemuck::pod_read_unaligned(&view)));
