@@ -105,6 +105,18 @@ fn every_reader_validates_under_every_prefix_and_in_an_engine() {
     }
 }
 
+/// The engine's names clash with those of a look-up that has no prefix.
+#[test]
+fn names_without_a_prefix_clash() {
+    let shader = shader(LightReader::Stored(Storage::Lists), LightKinds::default());
+    let text = shader.wgsl(&SLOTS).expect("links");
+    for name in ["View", "view", "LightCursor", "light_spheres", "world_of_view", "open_lights"] {
+        let clash = text.replace(&format!("lb_{name}"), name);
+        let reason = LinkedModule::validate("a clash", &(ENGINE.to_owned() + &clash)).err();
+        assert!(reason.is_some_and(|reason| reason.contains("redefinition")), "{name}");
+    }
+}
+
 #[test]
 fn bindings_stand_where_the_renderer_wants_them() {
     let places = |slots: &Slots<'_>| -> Vec<(String, (u32, u32))> {

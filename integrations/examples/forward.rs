@@ -31,6 +31,7 @@ fn vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @location(2)
   return Vertex(view.world_to_clip * vec4f(position, 1.0), normal, color);
 }
 
+// integration: begin
 // What one light adds. Both loops call it.
 fn light_at(light: u32, position: vec3f, normal: vec3f) -> vec3f {
   let sphere = lb_light_spheres[light];
@@ -51,6 +52,7 @@ fn listed_lights(in: Vertex) -> @location(0) vec4f {
   }
   return vec4f(in.color.rgb * sum, in.color.a);
 }
+// integration: end
 
 // The renderer's own loop, which tests compare with.
 @fragment
@@ -275,20 +277,13 @@ impl Forward {
         let glass = Material::new(gpu, &first.glass, Draw { is_glass: true, ..draw })?;
         let more = (1..camera_count).map(|_| camera());
         let cameras = std::iter::once(Ok(first)).chain(more).collect::<Result<_, AssignError>>()?;
-        let (opaque_scene, glass_scene) = scene();
-        let all = [opaque_scene.as_slice(), &glass_scene].concat();
-        let bytes: &[u8] = bytemuck::cast_slice(&all);
+        let (scene, opaque_vertices) = scene();
+        let bytes: &[u8] = bytemuck::cast_slice(&scene);
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         let vertices = gpu.buffer("vertices", bytes.len() as u64, usage)?;
         gpu.queue.write_buffer(&vertices, 0, bytes);
-        Ok(Self {
-            cameras,
-            vertices,
-            opaque_vertices: opaque_scene.len() as u32,
-            all_vertices: all.len() as u32,
-            opaque,
-            glass,
-        })
+        let all_vertices = scene.len() as u32;
+        Ok(Self { cameras, vertices, opaque_vertices, all_vertices, opaque, glass })
     }
 
     /// Draws all views in one submission, each with a camera of its own. With `own_loop`, every pixel loops over all
@@ -370,6 +365,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gpu = open_device()?;
     let size = [768, 320];
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    // integration: begin
     let clusters = |gpu: &Gpu, bounds, occupancy| -> Result<Box<dyn Assignment>, AssignError> {
         let (size, settings) = ("32x32x24".parse()?, CullSettings::default());
         Ok(Box::new(Clustered::new(gpu, size, bounds, occupancy, settings)?))
@@ -380,6 +376,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             clusters(gpu, Bounds::Implicit, Occupancy::Dense)?,
         ])
     };
+    // integration: end
     let mut renderer = Forward::new(&gpu, format, DepthMapping::Reversed, 2, &make)?;
     let target = Target::new(&gpu, format, size);
     let mut lights =
@@ -388,13 +385,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         lights.update(&gpu, &lights_at(frame as f32 / 30.0, 300))?;
         renderer.draw(&gpu, &target, &lights, &split_screen(size), false)?;
     }
-    image::save_buffer(
-        "forward.png",
-        &target.read(&gpu)?,
-        size[0],
-        size[1],
-        image::ColorType::Rgba8,
-    )?;
+    target.save(&gpu, "forward.png")?;
     println!("forward.png: {} lights on {}", lights.count(), gpu.info.name);
     Ok(())
 }

@@ -32,8 +32,8 @@ fn quad(corner: Vec3, u: Vec3, v: Vec3, color: [f32; 4]) -> [Vertex; 6] {
         .map(|position| Vertex { position, normal, color })
 }
 
-/// A floor with pillars, and panes of glass before them.
-pub fn scene() -> (Vec<Vertex>, Vec<Vertex>) {
+/// A floor with pillars, then panes of glass before them; and the number of opaque vertices, which come first.
+pub fn scene() -> (Vec<Vertex>, u32) {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let mut opaque =
         quad(Vec3::new(-12.0, 0.0, 12.0), 24.0 * x, -24.0 * z, [0.7, 0.7, 0.7, 1.0]).to_vec();
@@ -53,7 +53,9 @@ pub fn scene() -> (Vec<Vertex>, Vec<Vertex>) {
             [0.4, 0.7, 0.9, 0.4],
         ));
     }
-    (opaque, glass)
+    let opaque_vertices = opaque.len() as u32;
+    opaque.extend(glass);
+    (opaque, opaque_vertices)
 }
 
 /// Lights that wander over the floor. `time` is in seconds.

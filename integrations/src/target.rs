@@ -1,5 +1,7 @@
 //! The images that a renderer draws into.
 
+use std::error::Error;
+
 use assign::{AssignError, Gpu};
 
 /// The format of depth.
@@ -86,5 +88,12 @@ impl Target {
         );
         gpu.queue.submit([encoder.finish()]);
         gpu.map(&staging)
+    }
+
+    /// Writes an image of four bytes per pixel as PNG.
+    pub fn save(&self, gpu: &Gpu, path: &str) -> Result<(), Box<dyn Error>> {
+        let (width, height) = (self.color.width(), self.color.height());
+        let bytes = self.read(gpu)?;
+        Ok(image::save_buffer(path, &bytes, width, height, image::ColorType::Rgba8)?)
     }
 }
