@@ -113,12 +113,8 @@ fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
     let point = |record: &Record| {
         let ms = record.assign_and_shade_ms();
         let error = error(record, ERROR).filter(|error| error.is_finite() && ms.is_finite())?;
-        let tip = format!(
-            "{}\n{} ms\nrelMSE {}",
-            record.strategy,
-            significant(ms),
-            difference(error)
-        );
+        let tip =
+            format!("{}\n{} ms\nrelMSE {}", record.strategy, significant(ms), difference(error));
         Some(Point { label: number(reach(record)), ..Point::new(ms, error, tip) })
     };
     let by_source = grouped_by(all.iter().map(|entry| (is_bvh(entry.record), entry.record)));
