@@ -70,7 +70,12 @@ const ONE: u16 = 0x3c00;
 
 /// For each light, the flags with which any group lists it. The eye is two metres in front of a black wall in the plane
 /// z = 0, of that roughness and metallic.
-fn flags(gpu: &Gpu, lights: &[Light], source: LightSource, [roughness, metallic]: [u16; 2]) -> Vec<u32> {
+fn flags(
+    gpu: &Gpu,
+    lights: &[Light],
+    source: LightSource,
+    [roughness, metallic]: [u16; 2],
+) -> Vec<u32> {
     let view = View::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 1.0, 0.1, SIZE);
     // A clip depth of near / 2.
     let depth = flat_depth(gpu, SIZE, 0.05);
@@ -150,7 +155,10 @@ fn options_that_contradict_a_reach_are_refused() {
         (ClusterOptions { bounds: Bounds::Implicit, ..plain }, "only sparse clusters"),
     ] {
         let error = refused(options);
-        assert!(error.contains("a specular reach of 8 ranges") || error.contains("bins"), "{error}");
+        assert!(
+            error.contains("a specular reach of 8 ranges") || error.contains("bins"),
+            "{error}"
+        );
         assert!(error.contains(said), "{error}");
     }
     for storage in [Storage::Masks, Storage::Trees, Storage::PrunedLists] {

@@ -44,7 +44,7 @@ pub trait Assignment: Send + Sync {
     }
 
     /// Out to how many of its ranges a light is listed for its specular term, wherever a surface is polished enough
-    /// to show it ([`specular_reach`](crate::specular_reach)). Shading may let specular terms reach as far, and no
+    /// to show it ([`specular_reach`](fn@crate::specular_reach)). Shading may let specular terms reach as far, and no
     /// farther.
     fn specular_reach(&self) -> f32 {
         1.0

@@ -14,7 +14,8 @@
 //!    both from the WESL module `package::look_up`, which [`Lookup`] supplies. It sums the lights in this order:
 //!    ascending index, whatever the [`Storage`]. The order is the same for every strategy, so images can be
 //!    compared bit for bit. Take the fall-off from the WESL module `package::window`: a light's support
-//!    ends where that window does, so a list may lack lights that another fall-off would still show.
+//!    ends where that window does, so a list may lack lights that another fall-off would still show. Specular terms may
+//!    reach farther (`package::specular_reach`), with a strategy whose [lists do](Assignment::specular_reach).
 //!
 //! # Promises
 //!

@@ -88,7 +88,10 @@ fn a_bound_from_a_rounded_surface_is_no_shorter() {
         let drawn: Vec<[f32; 4]> = exact_surfaces.iter().map(|s| rounded(*s, by)).collect();
         for (surface, [reach, bound]) in exact_surfaces.iter().zip(on_the_gpu(&drawn)) {
             let needed = exact(*surface);
-            assert!(f64::from(bound) >= needed, "{surface:?} rounded by {by:?}: {bound} < {needed}");
+            assert!(
+                f64::from(bound) >= needed,
+                "{surface:?} rounded by {by:?}: {bound} < {needed}"
+            );
             // It is not much longer, but where a small cosine leaves much of the angle open.
             let [_, f0, cos_v, _] = *surface;
             if f0 >= 0.04 && cos_v > 0.05 {

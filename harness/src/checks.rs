@@ -203,7 +203,9 @@ pub(crate) fn served(
                     if let Some(most) = stage.specular_reach {
                         return Err(AssignError::Unsupported {
                             strategy: choice.id().to_string(),
-                            asked: format!("specular terms that reach {most} ranges of their lights"),
+                            asked: format!(
+                                "specular terms that reach {most} ranges of their lights"
+                            ),
                             reason: "its light volumes end at the lights' ranges".into(),
                         }
                         .into());

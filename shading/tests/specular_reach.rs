@@ -187,11 +187,13 @@ fn clusters_show_the_image_of_no_culling() {
     let [linear, bvh] = [LightSource::Linear, LightSource::Hierarchy];
     for mode in [Mode::Deferred, Mode::Forward] {
         let mut none = Everything::new(&gpu).unwrap();
-        let mut image =
-            |strategy: &mut dyn Assignment, reach| draw(&mut renderer, &gpu, strategy, mode, options(reach));
+        let mut image = |strategy: &mut dyn Assignment, reach| {
+            draw(&mut renderer, &gpu, strategy, mode, options(reach))
+        };
         let reference = image(&mut none, Some(MOST));
         let near = image(&mut none, None);
-        let differing = |image: &HdrImage, of: &HdrImage| image.difference(of).unwrap().differing_channels;
+        let differing =
+            |image: &HdrImage, of: &HdrImage| image.difference(of).unwrap().differing_channels;
         // The option lights what ranges leave dark.
         let gained = differing(&reference, &near);
         assert!(gained > 1_000, "{mode:?}: {gained}");

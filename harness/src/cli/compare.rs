@@ -73,10 +73,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "HOW", default_value = "windowed", value_parser = named(CUTS, Cut::name), help_heading = SHADING, hide_short_help = true)]
     pub cut: Cut,
 
-    /// Let the specular terms of points and spots reach up to N of their ranges, 1 to 64, where surfaces are polished
-    ///
-    /// How far depends on the surface and its angle to the eye. Strategies whose ids have reachN, and no culling,
-    /// serve it.
+    /// Let specular terms reach up to N of their lights' ranges, 1 to 64, on polished surfaces
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with_all = ["compensate", "operations"])]
     pub specular_reach: Option<f64>,
 

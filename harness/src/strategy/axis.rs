@@ -1,6 +1,8 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
-use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage, check_specular_reach, check_threshold};
+use assign::{
+    AreaBounds, FrustumTests, Kept, LightSource, Storage, check_specular_reach, check_threshold,
+};
 use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;

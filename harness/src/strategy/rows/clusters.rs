@@ -227,6 +227,7 @@ fn make(
     let size = options.parameters.parse()?;
     let Options { slices, normals, specular: cut, reach, .. } = *options;
     let settings = options.settings();
-    let clusters = ClusterOptions { size, bounds, occupancy, slices, normals, cut, reach, settings };
+    let clusters =
+        ClusterOptions { size, bounds, occupancy, slices, normals, cut, reach, settings };
     Ok(Method::lists(Clustered::with_options(gpu, clusters)?))
 }

@@ -18,7 +18,9 @@ pub(crate) const STUDY: Study = Study {
     answers: "What polished surfaces lose where lights end at their range, and what lists with a specular reach gain and cost",
     scenes: jobs::scenes,
     jobs: jobs::jobs,
-    motion: TakesMotion::None("each image is compared with that of lights without a range, which is drawn once"),
+    motion: TakesMotion::None(
+        "each image is compared with that of lights without a range, which is drawn once",
+    ),
     after_run: |_| Ok(()),
     headline: page::headline,
     findings: page::findings,

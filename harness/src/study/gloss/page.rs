@@ -27,7 +27,7 @@ const PICTURES_NOTE: &str = "The same exposure and tone curve for all. The light
      range.";
 
 /// The error that charts and sentences show.
-const ERROR: &str = "rel_mse";
+const ERROR: &str = "highlights";
 
 /// The most ranges that specular terms of a record reach.
 fn reach(record: &Record) -> f64 {
@@ -96,6 +96,7 @@ fn table(done: &Done, scene: &str, all: &[Entry<'_>]) -> Html {
         Column::ms("assign + shade", |record: &&Record| Some(record.assign_and_shade_ms()))
             .id("both_ms"),
         error_of("missing_energy", "missing energy", "%", percent),
+        error_of("highlights", "highlights", "", difference),
         error_of("rel_mse", "relMSE", "", difference),
         error_of("flip", "FLIP", "", difference),
         Column::figure("channels that differ", "", Better::Zero, differing, number).id("differing"),
@@ -114,7 +115,7 @@ fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
         let ms = record.assign_and_shade_ms();
         let error = error(record, ERROR).filter(|error| error.is_finite() && ms.is_finite())?;
         let tip = format!(
-            "{}\n{} ms\nrelMSE {}",
+            "{}\n{} ms\nerror of highlights {}",
             record.strategy,
             significant(ms),
             difference(error)
@@ -130,7 +131,7 @@ fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
     });
     let axes = [
         Axis::new("Assign + shade", "ms", Scale::Log),
-        Axis::new("relMSE against lights without a range", "", Scale::Log),
+        Axis::new("Error of highlights against lights without a range", "", Scale::Log),
     ];
     let series: Vec<Series> = series.collect();
     if series.iter().all(|series| series.points.is_empty()) {
@@ -180,7 +181,7 @@ fn sentence(done: &Done, scene: &str) -> Option<String> {
     let [near, far] = ends(&clusters(done, scene, Mode::Deferred))?;
     let [near_error, far_error] = [error(near, ERROR)?, error(far, ERROR)?];
     Some(format!(
-        "in {scene}, a reach of {} ranges takes relMSE against lights without a range from {} to {}, listed lights per \
+        "in {scene}, a reach of {} ranges takes the error of highlights against lights without a range from {} to {}, listed lights per \
          sample from {} to {}, and assign + shade from {} to {} ms",
         number(reach(far)),
         difference(near_error),
