@@ -127,7 +127,7 @@ fn from_clip(
             },
         }
     };
-    let [min, max] = seen.window.map(|corner| corner.as_vec2());
+    let [min, max] = seen.window.map(DVec2::as_vec2);
     let far_m = seen.far_m as f32;
     let plain = View {
         world_to_view: turn.as_mat4() * world_to_view,
