@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use assign::Gpu;
-use scenes::Scene;
+use scenes::{Scene, stability::PREFIX};
 use shading::WorldTriangles;
 
 use crate::{
@@ -48,7 +48,10 @@ impl Bench {
     /// The stage that arguments ask for; the scene is opened once while it stays the same.
     pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
         let bounce = args.bounce.is_on();
-        let key = format!("{} {} {} {bounce}", args.scene, args.scene_scale, args.replicate);
+        // Only scenarios depend on the seed.
+        let seed = args.scene.starts_with(PREFIX).then_some(args.seed);
+        let key =
+            format!("{} {} {} {bounce} {seed:?}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 stage.set_up(&self.gpu, args)?;

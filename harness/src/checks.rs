@@ -7,12 +7,12 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CliError, CompareArgs, MotionChoice, PicturesChoice, StageArgs},
+    cli::{BAD_INPUT, CliError, CompareArgs, MotionChoice, PicturesChoice, StageArgs},
     error::HarnessError,
     painter::raster_spheres,
     results::{RefusedStrategy, ResultsError},
     stage::Stage,
-    strategy::Method,
+    strategy::{Method, rows},
 };
 
 /// The most timed frames per method: laps times poses.
@@ -178,54 +178,64 @@ pub(crate) fn served(
     let mut served = Vec::new();
     let mut left_out = Vec::new();
     for choice in choices {
-        let check = || -> Result<(), HarnessError> {
-            match choice.make(gpu)? {
-                Method::Lists { mut strategy, .. } => {
-                    if cut != Cut::Windowed && choice.is_specular_cut() {
-                        let accepted = format!("windowed for {}", choice.id());
-                        return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
-                    }
-                    if choice.is_specular_cut() && stage.has_dielectrics() {
-                        return Err(CliError::new(format!(
-                            "{}: remove the segment that cuts specular light. Its bound on lost light \
-                             holds for dielectrics of reflectance 0.04, and the scene has other ones \
-                             (KHR_materials_ior, KHR_materials_specular)",
-                            choice.id()
-                        ))
-                        .into());
-                    }
-                    if let Some(most) = stage.specular_reach {
-                        check_listed_reach(strategy.as_ref(), most)?;
-                    }
-                    strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
-                }
-                Method::RasterSphere => {
-                    if let Some(most) = stage.specular_reach {
-                        return Err(AssignError::Unsupported {
-                            strategy: choice.id().to_string(),
-                            asked: format!(
-                                "specular terms that reach {most} ranges of their lights"
-                            ),
-                            reason: "its light volumes end at the lights' ranges".into(),
-                        }
-                        .into());
-                    }
-                    raster_spheres(stage, cut)?;
-                }
-                Method::Clay => {}
-            }
-            Ok(())
-        };
-        match check() {
+        match check_serves(&choice, gpu, stage, cut) {
             Ok(()) => served.push(choice),
             Err(error) if !choice.is_named => {
                 let (strategy, reason) = (choice.id().to_string(), error.to_string());
                 left_out.push(RefusedStrategy { strategy, mode: None, reason });
             }
-            Err(error) => return Err(error),
+            Err(error) if error.exit_code() != BAD_INPUT => return Err(error),
+            Err(error) => {
+                let others = rows().filter_map(|row| Choice::parse(row.family).ok());
+                let others = others.filter(|other| check_serves(other, gpu, stage, cut).is_ok());
+                let ids: Vec<String> = others.map(|other| other.id().to_string()).collect();
+                let ids = match ids.is_empty() {
+                    true => "none".to_owned(),
+                    false => ids.join(", "),
+                };
+                return Err(CliError::new(format!("{error}; what serves this run: {ids}")).into());
+            }
         }
     }
     Ok((served, left_out))
+}
+
+/// Refuses a choice that cannot serve the scene on this device.
+fn check_serves(choice: &Choice, gpu: &Gpu, stage: &Stage, cut: Cut) -> Result<(), HarnessError> {
+    match choice.make(gpu)? {
+        Method::Lists { mut strategy, .. } => {
+            if cut != Cut::Windowed && choice.is_specular_cut() {
+                let accepted = format!("windowed for {}", choice.id());
+                return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
+            }
+            if choice.is_specular_cut() && stage.has_dielectrics() {
+                return Err(CliError::new(format!(
+                    "{}: remove the segment that cuts specular light. Its bound on lost light holds for \
+                     dielectrics of reflectance 0.04, and the scene has other ones (KHR_materials_ior, \
+                     KHR_materials_specular)",
+                    choice.id()
+                ))
+                .into());
+            }
+            if let Some(most) = stage.specular_reach {
+                check_listed_reach(strategy.as_ref(), most)?;
+            }
+            strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
+        }
+        Method::RasterSphere => {
+            if let Some(most) = stage.specular_reach {
+                return Err(AssignError::Unsupported {
+                    strategy: choice.id().to_string(),
+                    asked: format!("specular terms that reach {most} ranges of their lights"),
+                    reason: "its light volumes end at the lights' ranges".into(),
+                }
+                .into());
+            }
+            raster_spheres(stage, cut)?;
+        }
+        Method::Clay => {}
+    }
+    Ok(())
 }
 
 /// Refuses options of area lights where no light is an area light. Only the scene's file tells.

@@ -5,7 +5,7 @@ use std::path::Path;
 use assign::{Gpu, LightOrder};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use shading::{EDGE, HdrImage, LightBvh, Mode};
+use shading::{EDGE, LightBvh, ListCheck, Mode};
 
 use crate::{
     bench::Bench,
@@ -15,9 +15,8 @@ use crate::{
     described::{note_faults, note_flaws},
     drift::unsteady,
     error::HarnessError,
-    image_errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, Timetable, unbounded_image},
+    measure::{Contest, Plan, Shown, Timetable, unbounded_image},
     messages::say,
     moving::{Moving, lights_by_slot},
     out_folder::OutFolder,
@@ -243,6 +242,7 @@ impl Run<'_> {
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = lights_by_slot(&self.gpu, &self.stage.lights)?;
         let bvh = (self.args.truth == TruthLevel::Full).then(|| LightBvh::new(&lights));
+        let mut check = bvh.as_ref().map(ListCheck::new);
         let modes = self.args.mode.modes();
         let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
@@ -260,7 +260,7 @@ impl Run<'_> {
             if served.is_empty() {
                 continue;
             }
-            self.measure_mode(served, mode, bvh.as_ref(), &bar)?;
+            self.measure_mode(served, mode, check.as_mut(), &bar)?;
         }
         bar.finish_and_clear();
         Ok(())
@@ -281,7 +281,7 @@ impl Run<'_> {
         &mut self,
         mut choices: Vec<Choice>,
         mode: Mode,
-        bvh: Option<&LightBvh<'_>>,
+        mut truth: Option<&mut ListCheck<'_>>,
         bar: &ProgressBar,
     ) -> Result<(), HarnessError> {
         let timed: Vec<usize> = (0..choices.len()).collect();
@@ -304,24 +304,24 @@ impl Run<'_> {
         }
         let mut contest = Contest::new(&self.gpu, self.stage, &mut methods, mode, self.plan)?;
         bar.set_message(format!("images, {}", mode.name()));
-        let mut none = match reference_ix {
-            Some(ix) => Some(contest.check(self.stage, ix, bvh)?),
+        let none = match reference_ix {
+            Some(ix) => Some(contest.compare_with(self.stage, ix)?),
             None => None,
         };
-        let mut reference = None;
-        if let Some(none) = &none {
-            let (made, pictures) = Reference::new(self.args, none.image.clone(), unbounded, mode)?;
-            self.pictures.extend(pictures);
-            reference = Some(made);
-        }
         let mut all_checked = Vec::new();
         for &ix in &timed {
-            let checked = match none.take_if(|_| Some(ix) == reference_ix) {
-                Some(checked) => checked,
-                None => contest.check(self.stage, ix, bvh)?,
-            };
+            let checked = contest.check(self.stage, ix, truth.as_deref_mut())?;
             all_checked.push((&choices[ix], checked));
             bar.inc(1);
+        }
+        let mut reference = None;
+        if let Some(none) = none {
+            let differs = all_checked.iter().any(|(choice, checked)| {
+                !choice.is_control() && checked.image.as_ref().is_some_and(Shown::differs)
+            });
+            let (made, pictures) = Reference::new(self.args, none, unbounded, mode, differs)?;
+            self.pictures.extend(pictures);
+            reference = Some(made);
         }
         let args = self.args;
         let see = |(choice, checked)| see(args, choice, mode, checked, reference.as_ref());
@@ -330,19 +330,16 @@ impl Run<'_> {
         self.pictures.extend(pictures.into_iter().flatten());
         bar.set_message(format!("times, {}", mode.name()));
         let exposure = reference.as_ref().map_or(1.0, |reference| reference.exposure);
-        let mut compared = |frame: u32, images: &[HdrImage], reference: &HdrImage| {
-            all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
-                let pair = ImagePair { image, reference, exposure };
-                match args.temporal {
-                    true => seen.follow(&pair, frame),
-                    false => seen.compare(&pair, Some(frame)),
-                }
+        let mut compared = |frame: u32, images: &[Shown]| {
+            all_seen.par_iter_mut().zip(images).try_for_each(|(seen, shown)| match args.temporal {
+                true => seen.follow(shown, exposure, frame),
+                false => seen.compare(shown, exposure, Some(frame)),
             })
         };
         let tick = &mut || bar.inc(1);
         let remember: Vec<usize> =
             timed.iter().copied().filter(|&ix| choices[ix].is_reused()).collect();
-        let timetable = Timetable { timed: &timed, remember: &remember, reference: reference_ix };
+        let timetable = Timetable { timed: &timed, remember: &remember };
         contest.time(self.stage, timetable, tick, &mut compared)?;
         for ((&ix, seen), times) in timed.iter().zip(all_seen).zip(contest.finish()) {
             let mut record = record(

@@ -22,7 +22,7 @@ use crate::{
     bench::Bench,
     checks::{check_motion, check_reach, served},
     choice::Choice,
-    cli::{CliError, ExplainArgs},
+    cli::{CliError, ExplainArgs, LayerArgs},
     compare::DEFAULT_PATH_FRAMES,
     error::HarnessError,
     stage::Stage,
@@ -100,6 +100,7 @@ pub fn set_stage<'a>(
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
+    stage.show_layers(&args.layers, args.stage.seed)?;
     if args.path {
         stage.follow_path(frames);
     }
@@ -163,6 +164,16 @@ fn json(explanation: &Explanation) -> String {
         |error| format!("{{\"error\": {:?}}}\n", error.to_string()),
         |text| text + "\n",
     )
+}
+
+/// The words for layers, which stand between the eye and the surface.
+fn layer_note(layers: &LayerArgs) -> Option<String> {
+    (*layers != LayerArgs::default()).then(|| {
+        "transparent surfaces, particles or fog are drawn over the surface: the radiance contains them, and the sample, \
+         its list and what lights add are those of the opaque surface behind them; what their own samples miss is \
+         counted by `compare` only"
+            .to_owned()
+    })
 }
 
 /// The words for a mode's inexactness: in forward modes shading rounds no normal, and the G-buffer does.

@@ -118,10 +118,15 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
 /// Errors by metric, in the order of [`ERROR_METRICS`]. Not finite if a pixel is not finite.
 pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
     if pair.image.pixels == pair.reference.pixels {
-        return ERROR_METRICS.iter().map(|metric| (metric.id, 0.0)).collect();
+        return no_errors();
     }
     let sums = Sums::add_up(pair);
     ERROR_METRICS.iter().map(|metric| (metric.id, (metric.value)(&sums, pair))).collect()
+}
+
+/// The errors of an image that is its reference.
+pub fn no_errors() -> Vec<(&'static str, f64)> {
+    ERROR_METRICS.iter().map(|metric| (metric.id, 0.0)).collect()
 }
 
 /// Errors as results store them, without those that are not finite.

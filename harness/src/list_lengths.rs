@@ -33,11 +33,14 @@ impl ListLengths {
                 *place = Some(length(group));
             }
         }
-        let mut groups = samples.groups.clone();
-        groups.sort_unstable();
-        groups.dedup();
-        let read = groups.into_iter().filter(|&group| group != ALL_LIGHTS);
-        count_in(&mut self.histogram, read.map(length));
+        let mut is_read = vec![false; lists.lists.len()];
+        for group in samples.groups.iter().filter(|&&group| group != ALL_LIGHTS) {
+            if let Some(is_read) = is_read.get_mut(*group as usize + 1) {
+                *is_read = true;
+            }
+        }
+        let read = lists.lists.iter().zip(is_read).filter(|(_, is_read)| *is_read);
+        count_in(&mut self.histogram, read.map(|(list, _)| list.count));
         // The first record lists all lights.
         count_in(&mut self.all_groups, lists.lists.iter().skip(1).map(|list| list.count));
     }

@@ -2,58 +2,38 @@
 //! frame in turns.
 
 mod laps;
+mod lists;
 mod plan;
+mod shown;
 
+pub use lists::{ListsFigures, memory_bytes};
 pub use plan::{Plan, Timetable};
+pub use shown::Shown;
 
-use assign::{Assignment, Counters, EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M};
-use shading::{
-    Cut, HdrImage, LayerSamples, LightBvh, LightingOptions, ListsTruth, Mode, Operations,
-    count_operations, record_for_probe, visit_layer_lists, visit_lists,
-};
+use std::sync::Arc;
+
+use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M};
+use shading::{Cut, HdrImage, ListCheck, Mode};
 
 use crate::{
     clock::PassClock,
     drift::WarmUp,
     error::HarnessError,
-    list_lengths::ListLengths,
-    moving::{Moving, known_lights, order_bytes},
+    moving::{Moving, known_lights},
     painter::Painter,
     pass_samples::PassSamples,
-    results::{MissedPair, Passes, Spans},
+    results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
     strategy::Method,
 };
-
-/// What was counted of the lists.
-#[derive(Clone, Debug, Default)]
-pub struct ListsFigures {
-    /// Groups.
-    pub groups: u64,
-    /// The culling kernel's counters.
-    pub counters: Counters,
-    /// Bytes of the lists on the GPU.
-    pub bytes: u64,
-    /// Bytes of everything that the strategy needs on the GPU, images that are drawn only for it
-    /// included.
-    pub memory_bytes: u64,
-    /// The truth on the CPU, where asked for.
-    pub truth: Option<ListsTruth>,
-    /// The first missed pair of the truth.
-    pub first_missed: Option<MissedPair>,
-    /// Of the samples of the truth, those of layers.
-    pub layer_samples: u64,
-    /// How long the lists are that samples read; empty where the truth was not asked for.
-    pub lengths: ListLengths,
-    /// Light operations, where they were asked for.
-    pub operations: Option<Operations>,
-}
+use lists::count;
+use shown::Kept;
 
 /// What a method showed before its times were taken.
 pub struct Checked {
-    /// Its radiance.
-    pub image: HdrImage,
+    /// Its image beside that of no culling; `None` if images are not compared.
+    pub image: Option<Shown>,
     /// Its lists; `None` for a method without.
     pub lists: Option<ListsFigures>,
 }
@@ -68,8 +48,8 @@ pub struct Timed {
     pub overflowed_frames: u32,
 }
 
-/// Is handed a frame's number, its images, method by method, and that of no culling.
-pub type Compare<'a> = dyn FnMut(u32, &[HdrImage], &HdrImage) -> Result<(), HarnessError> + 'a;
+/// Is handed a frame's number and its images, method by method.
+pub type Compare<'a> = dyn FnMut(u32, &[Shown]) -> Result<(), HarnessError> + 'a;
 
 /// Frames in which the pool of a method may grow to what its lists ask for.
 const MAX_SETTLING: u32 = 8;
@@ -88,6 +68,10 @@ pub struct Contest<'a> {
     plan: Plan,
     clock: PassClock,
     contenders: Vec<Contender<'a>>,
+    /// The method whose image is that of no culling, if images are compared, and its last image.
+    reference: Option<(usize, Option<Kept>)>,
+    /// The method whose frame is in the targets, if it was drawn to keep its image.
+    drawn: Option<usize>,
     /// That of the first image that was checked.
     exposure: Option<f32>,
 }
@@ -116,30 +100,76 @@ impl<'a> Contest<'a> {
             plan,
             clock: PassClock::new(gpu),
             contenders,
+            reference: None,
+            drawn: None,
             exposure: None,
         })
     }
 
-    /// Draws one method until none of its lists overflows, reads its image back, and checks its
-    /// lists against `truth`.
+    /// Has the images of all methods compared with that of one, which is no culling. Returns its image.
+    pub fn compare_with(
+        &mut self,
+        stage: &mut Stage,
+        method: usize,
+    ) -> Result<Arc<HdrImage>, HarnessError> {
+        self.reference = Some((method, None));
+        self.draw_reference(stage)?;
+        self.drawn = Some(method);
+        match &mut self.reference {
+            Some((_, Some(kept))) => kept.image(),
+            _ => Ok(Arc::new(read(&self.gpu, stage)?)),
+        }
+    }
+
+    /// Draws no culling and keeps its image, if images are compared.
+    fn draw_reference(&mut self, stage: &mut Stage) -> Result<(), HarnessError> {
+        let Some((method, _)) = self.reference else { return Ok(()) };
+        self.draw(stage, method)?;
+        if let Some((_, kept)) = &mut self.reference {
+            Kept::keep(kept, &self.gpu, stage)?;
+        }
+        Ok(())
+    }
+
+    /// Compares the image that a frame left in the targets with that of no culling.
+    fn look(&mut self, stage: &Stage) -> Result<Option<Shown>, HarnessError> {
+        match &mut self.reference {
+            Some((_, Some(kept))) => kept.look(&self.gpu, stage).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// Draws one method until none of its lists overflows, compares its image, and checks its lists with `truth`.
     pub fn check(
         &mut self,
         stage: &mut Stage,
         method: usize,
-        truth: Option<&LightBvh<'_>>,
+        truth: Option<&mut ListCheck<'_>>,
     ) -> Result<Checked, HarnessError> {
+        let is_drawn = self.drawn.take() == Some(method);
         for drawn in 0..=MAX_SETTLING {
+            if is_drawn && !self.contenders[method].painter.has_groups() {
+                break;
+            }
             let settled = self.draw(stage, method)?;
             // The counters of the first frame come back with the second.
             if settled && (drawn > 0 || !self.contenders[method].painter.has_groups()) {
                 break;
             }
         }
-        let image = read(&self.gpu, stage)?;
+        let image = self.look(stage)?;
         let lists = match &self.contenders[method].painter {
             Painter::Lists { strategy, lighting, .. } => {
-                let exposure = *self.exposure.get_or_insert_with(|| image.auto_exposure());
-                let seen = self.plan.operations.then(|| (lighting.options(), exposure));
+                let seen = match self.plan.operations {
+                    true => {
+                        let known = self.exposure.map_or_else(
+                            || Ok(read(&self.gpu, stage)?.auto_exposure()),
+                            Ok::<_, HarnessError>,
+                        );
+                        Some((lighting.options(), *self.exposure.insert(known?)))
+                    }
+                    false => None,
+                };
                 Some(count(&self.gpu, stage, *strategy, self.mode, truth, seen)?)
             }
             Painter::RasterSphere(_) | Painter::Clay => None,
@@ -270,102 +300,4 @@ pub(crate) fn draw_unclocked(
     gpu.queue.submit([encoder.finish()]);
     gpu.wait()?;
     Ok(settled)
-}
-
-/// Bytes of everything that a strategy needs on the GPU in a mode: its own, images that are drawn only for it,
-/// and what orders the lights in every frame if it reads the hierarchy.
-pub fn memory_bytes(stage: &Stage, strategy: &dyn Assignment, mode: Mode) -> u64 {
-    let needs = strategy.needs();
-    let order = if needs.hierarchy { order_bytes(&stage.lights) } else { 0 };
-    strategy.memory_bytes() + order + stage.renderer.targets().bytes_for(mode, needs)
-}
-
-/// The place of a missed pair as results name it.
-fn place(stage: &Stage, pair: shading::MissedPair) -> MissedPair {
-    let width = stage.view.viewport.width;
-    // The GPU's order is known to the GPU only.
-    let given = |slot| stage.lights.given_index(slot).filter(|_| !stage.lights.order().is_on_gpu());
-    MissedPair {
-        pixel: [pair.pixel % width, pair.pixel / width],
-        light: pair.light,
-        given: pair.light.and_then(given),
-    }
-}
-
-/// Reads the lists of the last frame back and checks them; `seen` asks for light operations.
-fn count(
-    gpu: &Gpu,
-    stage: &Stage,
-    strategy: &dyn Assignment,
-    mode: Mode,
-    truth: Option<&LightBvh<'_>>,
-    seen: Option<(LightingOptions, f32)>,
-) -> Result<ListsFigures, HarnessError> {
-    let snapshot = strategy.lists().snapshot(gpu)?;
-    let mut lengths = ListLengths::default();
-    let Stage { renderer, view, lights, .. } = stage;
-    if mode.is_forward() && (truth.is_some() || seen.is_some()) {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut passes = EncoderPasses { encoder: &mut encoder };
-        record_for_probe(renderer, view, strategy, &mut passes);
-        gpu.queue.submit([encoder.finish()]);
-    }
-    let frame = renderer.frame(view, lights);
-    let operations = match seen {
-        None => None,
-        Some((options, exposure)) => {
-            Some(count_operations(renderer, strategy, &frame, options, exposure)?)
-        }
-    };
-    let mut layer_samples = 0;
-    let truth = match truth {
-        None => None,
-        Some(bvh) => {
-            let pixels = view.viewport.width as usize * view.viewport.height as usize;
-            let mut found = ListsTruth::default();
-            let is_forward = mode.is_forward();
-            visit_lists(
-                renderer,
-                strategy,
-                &frame,
-                &snapshot,
-                is_forward,
-                &mut |samples, lists| {
-                    lengths.add(samples, lists, pixels);
-                    found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
-                },
-            )?;
-            let layers = LayerSamples::capture(renderer, &frame)?;
-            visit_layer_lists(
-                renderer,
-                strategy,
-                &frame,
-                &snapshot,
-                &layers,
-                &mut |samples, lists| {
-                    let checked = bvh.check(samples, lists, false);
-                    layer_samples += checked.samples;
-                    found = found.plus(checked);
-                },
-            )?;
-            Some(found)
-        }
-    };
-    let mut counters = snapshot.counters;
-    if truth.is_some() && strategy.lookup().is_per_sample() {
-        // Each sample has a list of its own, which is no group's.
-        counters.longest = lengths.longest();
-        lengths.all_groups.clear();
-    }
-    Ok(ListsFigures {
-        groups: u64::from(strategy.lists().group_count()),
-        counters,
-        bytes: strategy.lists().bytes(),
-        memory_bytes: memory_bytes(stage, strategy, mode),
-        first_missed: truth.and_then(|truth| truth.first_missed).map(|pair| place(stage, pair)),
-        truth,
-        layer_samples,
-        lengths,
-        operations,
-    })
 }

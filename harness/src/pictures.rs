@@ -1,6 +1,6 @@
 //! The images of a comparison: the reference that they are compared with, and the pictures that are kept.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use rayon::prelude::*;
 use shading::{HdrImage, Mode, heat_map_png};
@@ -23,22 +23,27 @@ const DIFFERENCE_GAIN: f32 = 64.0;
 
 /// The images that those of one mode are compared with, and the exposure that all pictures of the mode share.
 pub(crate) struct Reference {
-    image: HdrImage,
+    image: Arc<HdrImage>,
     unbounded: Option<HdrImage>,
     /// Errors of no culling against lights without a range.
     unbounded_errors: Vec<(&'static str, f64)>,
     pub(crate) exposure: f32,
     picture: Option<String>,
+    /// Whether the linear image is kept too.
+    is_linear: bool,
 }
 
 impl Reference {
-    /// Keeps the images that others are compared with. Returns the pictures for the report.
+    /// Keeps the images that others are compared with. Returns the pictures for the report. The linear image is kept with
+    /// all pictures, or if some method `differs`.
     pub(crate) fn new(
         args: &CompareArgs,
-        image: HdrImage,
+        image: Arc<HdrImage>,
         unbounded: Option<HdrImage>,
         mode: Mode,
+        differs: bool,
     ) -> Result<(Self, Pictures), HarnessError> {
+        let is_linear = differs || args.unbounded || args.pictures == PicturesChoice::All;
         let exposure = image.auto_exposure();
         let mut picture = None;
         let mut pictures = Pictures::new();
@@ -46,11 +51,11 @@ impl Reference {
             let out = &args.out;
             let name = format!("{}-None.png", mode.name());
             let images = [
-                Some((name.clone(), &image)),
+                Some((name.clone(), &*image)),
                 unbounded.as_ref().map(|image| (format!("{}-unbounded.png", mode.name()), image)),
             ];
             let keep = |(name, image): (String, &HdrImage)| -> Result<_, HarnessError> {
-                keep(out, &name, image.to_png(exposure)?, Some(image))
+                keep(out, &name, image.to_png(exposure)?, Some(image).filter(|_| is_linear))
             };
             let kept: Result<Pictures, _> =
                 images.into_par_iter().flatten_iter().map(keep).collect();
@@ -61,7 +66,7 @@ impl Reference {
             .as_ref()
             .map(|reference| errors(&ImagePair { image: &image, reference, exposure }))
             .unwrap_or_default();
-        Ok((Self { image, unbounded, unbounded_errors, exposure, picture }, pictures))
+        Ok((Self { image, unbounded, unbounded_errors, exposure, picture, is_linear }, pictures))
     }
 }
 
@@ -91,14 +96,15 @@ pub(crate) fn see(
     let is_control = choice.is_control();
     let Checked { image, lists } = checked;
     let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
-    let Some(reference) = reference else { return Ok((seen, Pictures::new())) };
-    let is_same = image.pixels == reference.image.pixels;
+    let (Some(reference), Some(shown)) = (reference, image) else {
+        return Ok((seen, Pictures::new()));
+    };
     let exposure = reference.exposure;
-    let pair = ImagePair { image: &image, reference: &reference.image, exposure };
+    let pair = shown.pair(exposure);
     if !is_control {
-        seen.compare(&pair, None)?;
-        seen.unbounded_errors = match &reference.unbounded {
-            Some(unbounded) if !is_same => errors(&ImagePair { reference: unbounded, ..pair }),
+        seen.compare(&shown, exposure, None)?;
+        seen.unbounded_errors = match (&reference.unbounded, &pair) {
+            (Some(unbounded), Some(pair)) => errors(&ImagePair { reference: unbounded, ..*pair }),
             _ => reference.unbounded_errors.clone(),
         };
     }
@@ -108,7 +114,8 @@ pub(crate) fn see(
     }
     let mut pictures = Pictures::new();
     let Some(baseline) = &reference.picture else { return Ok((seen, pictures)) };
-    let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
+    let exr = |picture: &str| Some(picture.replace(".png", ".exr"));
+    let raw = |picture: &str| exr(picture).filter(|_| reference.is_linear);
     let mut images = Images {
         baseline: Some(baseline.clone()),
         raw_baseline: raw(baseline),
@@ -120,17 +127,18 @@ pub(crate) fn see(
         ..Images::default()
     };
     let stem = format!("{}-{}", mode.name(), choice.id().as_str().replace('/', "-"));
-    if is_same {
+    if pair.is_none() {
         // An identical image is kept once.
         (images.tone_mapped, images.raw) = (Some(baseline.clone()), raw(baseline));
-    } else {
+    }
+    if let Some(ImagePair { image, .. }) = pair {
         let name = format!("{stem}.png");
         let exposure = if is_control { 1.0 } else { exposure };
-        pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(&image))?);
-        images.raw = raw(&name);
+        pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(image))?);
+        images.raw = exr(&name);
         images.tone_mapped = Some(name);
     }
-    if !is_same && !is_control {
+    if let Some(ImagePair { image, .. }) = pair.filter(|_| !is_control) {
         let name = format!("{stem}-difference.png");
         let gain = DIFFERENCE_GAIN * exposure;
         let png = image.difference_png(&reference.image, gain)?;
@@ -139,7 +147,7 @@ pub(crate) fn see(
         images.difference_amplification = Some(f64::from(gain));
     }
     let lengths = &seen.lists.lengths.per_pixel;
-    let is_wanted = args.pictures == PicturesChoice::All || !is_same;
+    let is_wanted = args.pictures == PicturesChoice::All || pair.is_some();
     if is_wanted && !lengths.is_empty() {
         let name = format!("{stem}-heat.png");
         let png = heat_map_png(&reference.image, exposure, lengths)?;

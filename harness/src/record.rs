@@ -8,8 +8,8 @@ use crate::{
     cli::{CompareArgs, LayerArgs, name_of},
     clock::clock_of,
     error::HarnessError,
-    image_errors::{ImagePair, errors, stored},
-    measure::{ListsFigures, Plan, Timed},
+    image_errors::{errors, no_errors, stored},
+    measure::{ListsFigures, Plan, Shown, Timed},
     moving::Moving,
     results::{
         Errors, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record, Setting,
@@ -40,6 +40,8 @@ pub struct Seen {
     worst_pixel: Option<WorstPixel>,
     /// Errors against no culling, of each image that was compared.
     errors: Vec<(&'static str, Vec<f64>)>,
+    /// Whether one of these images differs from no culling.
+    measured_one_that_differs: bool,
     /// How the error changes over frames that follow each other.
     follower: Follower,
 }
@@ -50,17 +52,41 @@ impl Seen {
         Self { lists, is_control, ..Self::default() }
     }
 
-    /// Compares an image of a frame with that of no culling; `None` is the still view.
+    /// Adds an image of a frame, beside that of no culling; `frame` `None` is the still view.
     pub fn compare(
         &mut self,
-        pair: &ImagePair<'_>,
+        shown: &Shown,
+        exposure: f32,
         frame: Option<u32>,
     ) -> Result<(), HarnessError> {
         if self.is_control {
             return Ok(());
         }
-        let difference = pair.image.difference(pair.reference)?;
+        self.note_difference(shown, exposure, frame)?;
+        self.measure_errors(shown, exposure);
+        Ok(())
+    }
+
+    fn measure_errors(&mut self, shown: &Shown, exposure: f32) {
+        self.measured_one_that_differs |= shown.differs();
+        let errors = shown.pair(exposure).map_or_else(no_errors, |pair| errors(&pair));
+        for (id, error) in errors {
+            match self.errors.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, all)) => all.push(error),
+                None => self.errors.push((id, vec![error])),
+            }
+        }
+    }
+
+    fn note_difference(
+        &mut self,
+        shown: &Shown,
+        exposure: f32,
+        frame: Option<u32>,
+    ) -> Result<(), HarnessError> {
         self.compared = true;
+        let Some(pair) = shown.pair(exposure) else { return Ok(()) };
+        let difference = pair.image.difference(pair.reference)?;
         self.max_abs = self.max_abs.max(difference.max_abs);
         if let Some(pixel) = difference.worst_pixel
             && (self.worst_pixel.is_none() || difference.max_rel > self.max_rel)
@@ -70,27 +96,30 @@ impl Seen {
         }
         self.max_rel = self.max_rel.max(difference.max_rel);
         self.differing_channels += difference.differing_channels;
-        for (id, error) in errors(pair) {
-            match self.errors.iter_mut().find(|(known, _)| *known == id) {
-                Some((_, all)) => all.push(error),
-                None => self.errors.push((id, vec![error])),
-            }
-        }
         Ok(())
     }
 
-    /// Compares the image of the next frame with that of no culling, and with the error of the frame before.
-    pub fn follow(&mut self, pair: &ImagePair<'_>, frame: u32) -> Result<(), HarnessError> {
-        self.compare(pair, Some(frame))?;
-        if !self.is_control {
-            self.follower.follow(pair);
+    /// Adds the image of the next frame, and how its error differs from that of the frame before. Other errors are those of
+    /// the first image that differs: FLIP takes a second for each large image.
+    pub fn follow(&mut self, shown: &Shown, exposure: f32, frame: u32) -> Result<(), HarnessError> {
+        if self.is_control {
+            return Ok(());
         }
+        self.note_difference(shown, exposure, Some(frame))?;
+        if shown.differs() && !self.measured_one_that_differs {
+            self.errors.clear();
+        }
+        if self.errors.is_empty() {
+            self.measure_errors(shown, exposure);
+        }
+        self.follower.follow(shown.pair(exposure).as_ref());
         Ok(())
     }
 
     /// Forgets the errors so far, not the differences.
     pub fn forget_errors(&mut self) {
         self.errors.clear();
+        self.measured_one_that_differs = false;
     }
 }
 

@@ -2,6 +2,13 @@
 
 use scenes::stability::{self, Group, Move, Scenario};
 
+/// What follows the scenarios.
+const NOTES: &str = "\
+A number counts situations: scenarios with the same number show one situation in several ways. Those without a\n\
+number show what users of engines report.\n\
+--scene stability:NAME draws a scenario, and adds the options that it names. --seed draws it with other random\n\
+numbers. With --path, its camera makes its first move; stability:NAME:MOVE makes another.\n";
+
 /// Every scenario, by group: number, name, moves, and what breaks there.
 pub fn list() -> String {
     let mut text = String::new();
@@ -12,7 +19,7 @@ pub fn list() -> String {
         }
         text.push('\n');
     }
-    text + "--scene stability:NAME draws a scenario. With --path, its camera makes its first move; stability:NAME:MOVE makes another.\n"
+    text + NOTES
 }
 
 fn row(scenario: &Scenario) -> String {
@@ -24,7 +31,7 @@ fn row(scenario: &Scenario) -> String {
         note(format!("moves: {}", moves.join(", ")));
     }
     if !scenario.options.is_empty() {
-        note(format!("drawn only with {}", scenario.options.join(" ")));
+        note(format!("adds {}", scenario.options.join(" ")));
     }
     if let Some(why_not) = scenario.why_not {
         note(format!("not shown yet: {why_not}"));

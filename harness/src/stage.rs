@@ -99,7 +99,7 @@ impl Stage {
     }
 
     fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
-        let scene = scenes::open(&args.scene)?;
+        let scene = scenes::open_seeded(&args.scene, args.seed)?;
         let unscaled_m = scene.core_bounds.diagonal();
         let mut scene = scene.scaled(args.scene_scale)?.replicated(args.replicate)?;
         if args.bounce.is_on() {

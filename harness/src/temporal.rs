@@ -2,14 +2,18 @@
 
 use crate::{image_errors::ImagePair, results::TemporalError};
 
+/// The error of a frame, image minus reference by channel; `None` if both are the same in every bit.
+type FrameError = Option<Vec<[f64; 3]>>;
+
 /// Follows the images of one method from frame to frame.
 #[derive(Default)]
 pub struct Follower {
-    /// The error of the frame before: image minus reference, by channel.
-    before: Option<Vec<[f64; 3]>>,
+    before: Option<FrameError>,
     /// Pairs of frames so far.
     frames: u32,
-    channels: u64,
+    /// Channels of a frame, once one of them had an error.
+    channels: usize,
+    width: u32,
     sum: f64,
     worst: f64,
     worst_pixel: [u32; 2],
@@ -17,31 +21,37 @@ pub struct Follower {
 }
 
 impl Follower {
-    /// Adds the next frame: its image and that of no culling.
-    pub fn follow(&mut self, pair: &ImagePair<'_>) {
+    /// Adds the next frame: its image and that of no culling; `None` if both are the same in every bit.
+    pub fn follow(&mut self, pair: Option<&ImagePair<'_>>) {
         let error = |(a, b): (&[f32; 3], &[f32; 3])| {
             std::array::from_fn(|channel| f64::from(a[channel]) - f64::from(b[channel]))
         };
-        let pixels = pair.image.pixels.iter().zip(&pair.reference.pixels);
-        let now: Vec<[f64; 3]> = pixels.map(error).collect();
+        let now = pair.map(|ImagePair { image, reference, .. }| {
+            self.channels = 3 * image.pixels.len();
+            self.width = image.width.max(1);
+            image.pixels.iter().zip(&reference.pixels).map(error).collect()
+        });
         if let Some(before) = self.before.take() {
             self.frames += 1;
-            self.add(&before, &now, pair.image.width);
+            self.add(&before, &now);
         }
         self.before = Some(now);
     }
 
-    fn add(&mut self, before: &[[f64; 3]], now: &[[f64; 3]], width: u32) {
-        for (ix, (before, now)) in (0..).zip(before.iter().zip(now)) {
-            for (before, now) in before.iter().zip(now) {
+    fn add(&mut self, before: &FrameError, now: &FrameError) {
+        let at = |error: &FrameError, ix: usize| {
+            error.as_ref().and_then(|error| error.get(ix).copied()).unwrap_or_default()
+        };
+        let pixels = [before, now].into_iter().flatten().map(Vec::len).max().unwrap_or(0);
+        for ix in 0..pixels {
+            for (before, now) in at(before, ix).into_iter().zip(at(now, ix)) {
                 // A channel that is not finite, in both frames or in one, is as wrong as can be.
                 let change = (now - before).abs();
                 let change = if change.is_nan() { f64::INFINITY } else { change };
                 self.sum += change;
-                self.channels += 1;
                 if change > self.worst {
                     self.worst = change;
-                    self.worst_pixel = [ix % width.max(1), ix / width.max(1)];
+                    self.worst_pixel = [ix as u32 % self.width, ix as u32 / self.width];
                     self.worst_frame = self.frames;
                 }
             }
@@ -53,7 +63,7 @@ impl Follower {
         let finite = |number: f64| number.is_finite().then_some(number);
         (self.frames > 0).then(|| TemporalError {
             frames: self.frames,
-            mean: finite(self.sum / self.channels.max(1) as f64),
+            mean: finite(self.sum / (f64::from(self.frames) * self.channels.max(1) as f64)),
             worst: finite(self.worst),
             worst_pixel: self.worst_pixel,
             worst_frame: self.worst_frame,
@@ -80,7 +90,7 @@ mod tests {
         for (shown, reference) in frames {
             let (shown, reference) = (image(*shown), image(*reference));
             let pair = ImagePair { image: &shown, reference: &reference, exposure: 1.0 };
-            follower.follow(&pair);
+            follower.follow(Some(&pair).filter(|_| shown != reference));
         }
         follower.found()
     }

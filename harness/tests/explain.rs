@@ -17,7 +17,7 @@ use harness::{
     strategy::Method,
 };
 use serde_json::Value;
-use shading::{Cut, LightBvh};
+use shading::{Cut, LightBvh, ListCheck};
 
 /// What every test draws: few triangles, few pixels.
 const SMALL: [&str; 6] = ["--scene", "town-small", "--size", "64x36", "--lights", "300"];
@@ -91,7 +91,7 @@ fn a_planted_fault_names_the_missed_light() {
         };
         let mut contest = Contest::new(&gpu, stage, &mut methods, args.mode, plan).expect("made");
         let bvh = LightBvh::new(&lights);
-        let checked = contest.check(stage, 0, Some(&bvh)).expect("checked");
+        let checked = contest.check(stage, 0, Some(&mut ListCheck::new(&bvh))).expect("checked");
         let missed = checked.lists.and_then(|lists| lists.first_missed).expect("a missed pair");
         let light = missed.light.expect("a light");
 
@@ -192,7 +192,7 @@ fn a_frame_of_a_path_or_of_a_motion_is_explained() {
 #[test]
 fn what_cannot_be_explained_is_said_clearly() {
     let sky = explained(&["--pixel", "5,0", "--strategies", "None,T-E"]);
-    assert!(sky.contains("This pixel shows no surface (sky)"), "{sky}");
+    assert!(sky.contains("This pixel shows no opaque surface (sky)"), "{sky}");
     for (arguments, expected) in [
         (
             &["--pixel", "64,3"][..],

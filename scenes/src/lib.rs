@@ -63,6 +63,6 @@ pub use places::Places;
 pub use pose::Pose;
 pub use primary_light::primary_light;
 pub use radii::Radii;
-pub use registry::{SceneEntry, list, open, open_lights};
+pub use registry::{SceneEntry, list, open, open_lights, open_seeded};
 pub use scene::{Camera, Instance, Lens, Mesh, Model, Scene, Vertex};
 pub use town::{TownSize, town};

@@ -53,11 +53,20 @@ pub fn list() -> &'static [SceneEntry] {
 /// [`SceneError::Move`] if a scenario does not move as its id asks. For a file, the errors of
 /// [`load_gltf`].
 pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
+    open_seeded(name_or_path, SEED)
+}
+
+/// As [`open`], with a seed for stability scenarios. [`open`] takes the seed 1. Other scenes are the same with every seed.
+///
+/// # Errors
+///
+/// As for [`open`].
+pub fn open_seeded(name_or_path: &str, seed: u64) -> Result<Scene, SceneError> {
     if let Some(entry) = ENTRIES.iter().find(|entry| entry.id == name_or_path) {
         return Ok((entry.make)());
     }
     if name_or_path.starts_with(stability::PREFIX) {
-        return stability::open(name_or_path, SEED)?.ok_or_else(|| unknown(name_or_path));
+        return stability::open(name_or_path, seed)?.ok_or_else(|| unknown(name_or_path));
     }
     match gltf_path(name_or_path) {
         Some(path) => load_gltf(path),
@@ -124,6 +133,16 @@ fn unknown(name: &str) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_seed_changes_scenarios_and_no_other_scene() {
+        let hash = |name: &str, seed: u64| open_seeded(name, seed).expect("a scene").hash();
+        for (name, is_seeded) in [("stability:sub-pixel-moves", true), ("atrium", false)] {
+            let default = open(name).expect("a scene").hash();
+            assert_eq!(hash(name, 1), default, "{name}");
+            assert_eq!(hash(name, 2) != default, is_seeded, "{name}");
+        }
+    }
 
     #[test]
     fn unknown_names_list_similar_ids() {

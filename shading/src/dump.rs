@@ -19,9 +19,16 @@ const DUMPED_BINDING: u32 = 10;
 /// The most entries that are copied at once: 64 MiB, half of what any device can bind.
 const MOST_AT_ONCE: usize = 16 << 20;
 
+/// The most entries that are copied in all. Of samples with more, some are looked up.
+const MOST_ENTRIES: usize = 4 * MOST_AT_ONCE;
+
 /// Calls `visit` with samples and the lists that they read: once with those of all samples, or, if
 /// [each sample reads its own lights](assign::Lookup::is_per_sample), with some samples at a time, each a group
 /// of its own. Blocks.
+///
+/// If samples that read their own lights list more than 64 Mi of them together, `visit` gets every second sample, or every
+/// third one, and so on, so that the time is bounded. Each column and each row of the image keeps some of its samples. Lists
+/// of groups are visited at all samples.
 ///
 /// A sample's own lists are what a compute shader with workgroups of 8 x 8 pixels reads, as in deferred shading.
 /// With `is_forward`, each sample looks its lights up for itself, as in forward shading. A driver may choose another
@@ -71,6 +78,8 @@ pub(crate) fn visit_lists_at(
     let dump = Dump { renderer, strategy, frame, asked };
     let counts = dump.counts()?;
     let length = |pixel: u32| counts.get(pixel as usize).map_or(0, |&count| count as usize);
+    let entries = samples.pixels.iter().map(|&pixel| length(pixel)).sum();
+    let samples = thinned(samples, step_of(entries, MOST_ENTRIES, frame.view.viewport.width));
     let mut next = 0;
     while next < samples.pixels.len() {
         let mut lists = vec![LightList::default()];
@@ -94,6 +103,34 @@ pub(crate) fn visit_lists_at(
         next = range.end;
     }
     Ok(())
+}
+
+/// How many samples to go from one that is looked up to the next: enough that they list `most` entries at most of `entries`.
+/// It has no divisor in common with the width of the image, so that it meets each column.
+fn step_of(entries: usize, most: usize, width: u32) -> usize {
+    let divisor = |a: u32, b: u32| {
+        let (mut a, mut b) = (a, b);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let least = entries.div_ceil(most).max(1) as u32;
+    (least..).find(|&step| divisor(width, step) == 1).unwrap_or(least) as usize
+}
+
+/// Every so many samples.
+fn thinned(samples: Samples, step: usize) -> Samples {
+    if step == 1 {
+        return samples;
+    }
+    let Samples { positions, normals, groups, pixels } = samples;
+    Samples {
+        positions: positions.into_iter().step_by(step).collect(),
+        normals: normals.into_iter().step_by(step).collect(),
+        groups: groups.into_iter().step_by(step).collect(),
+        pixels: pixels.into_iter().step_by(step).collect(),
+    }
 }
 
 /// The entries that the look-up of one pixel returns, in its order, whatever the strategy stores; empty if the pixel
@@ -191,5 +228,23 @@ impl Dump<'_> {
             pod_collect_to_vec(&gpu.read(&counts, count_bytes)?),
             pod_collect_to_vec(&gpu.read(&dumped, entry_bytes)?),
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_entries_are_all_visited_and_of_more_each_column_keeps_some() {
+        assert_eq!([0, 1, 99, 100].map(|entries| step_of(entries, 100, 1920)), [1; 4]);
+        for (entries, width, step) in [(101, 1920, 7), (101, 7, 2), (1_000, 96, 11)] {
+            assert_eq!(step_of(entries, 100, width), step, "{entries} {width}");
+            let columns: std::collections::BTreeSet<usize> =
+                (0..width as usize).map(|ix| ix * step % width as usize).collect();
+            assert_eq!(columns.len(), width as usize);
+        }
+        let samples = Samples { pixels: (0..10).collect(), ..Samples::default() };
+        assert_eq!(thinned(samples, 3).pixels, [0, 3, 6, 9]);
     }
 }

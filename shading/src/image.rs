@@ -39,15 +39,7 @@ impl HdrImage {
         targets: &Targets,
         viewport: assign::Viewport,
     ) -> Result<Self, ShadingError> {
-        let [width, height] = targets.size;
-        if viewport.x.saturating_add(viewport.width) > width
-            || viewport.y.saturating_add(viewport.height) > height
-        {
-            return Err(ShadingError::Mismatch {
-                left: [viewport.width, viewport.height],
-                right: targets.size,
-            });
-        }
+        targets.check_holds(viewport)?;
         let row_bytes = (targets.size[0] * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(row_bytes) * u64::from(targets.size[1]);
         let staging = gpu.staging("radiance read-back", bytes)?;
@@ -66,12 +58,10 @@ impl HdrImage {
         );
         gpu.queue.submit([encoder.finish()]);
         let bytes = gpu.map(&staging)?;
-        let mut pixels = Vec::new();
+        let mut pixels = Vec::with_capacity(viewport.width as usize * viewport.height as usize);
         for y in viewport.y..viewport.y + viewport.height {
             let start = y as usize * row_bytes as usize + viewport.x as usize * 16;
-            let row = &bytes[start..start + viewport.width as usize * 16];
-            let texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(row);
-            pixels.extend(texels.into_iter().map(|[r, g, b, _]| [r, g, b]));
+            pixels.extend(texels_of(&bytes[start..], viewport.width));
         }
         Ok(Self { width: viewport.width, height: viewport.height, pixels })
     }
@@ -185,6 +175,14 @@ impl HdrImage {
         })
         .map_err(|e| ShadingError::Write { path: path.to_owned(), reason: e.to_string() })
     }
+}
+
+/// Red, green and blue of a row's first pixels, from its bytes.
+pub(crate) fn texels_of(row: &[u8], width: u32) -> impl Iterator<Item = [f32; 3]> {
+    row.chunks_exact(16).take(width as usize).map(|texel| {
+        let [red, green, blue, _]: [f32; 4] = bytemuck::pod_read_unaligned(texel);
+        [red, green, blue]
+    })
 }
 
 /// Rec. 709 luminance of linear RGB.

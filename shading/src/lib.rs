@@ -17,7 +17,7 @@
 //! and depth by `sample_at`, so a strategy assigns it to the same group. Only features that a scene
 //! contains are compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
-//! [`LightBvh`] checks a strategy's lists on the CPU in f64. [`HdrImage`] compares images bit for
+//! [`ListCheck`] checks a strategy's lists on the CPU in f64. [`HdrImage`] compares images bit for
 //! bit. [`traced`] renders the true image, including shadows and bounces.
 
 mod area_model;
@@ -28,10 +28,12 @@ mod gbuffer_inputs;
 mod geometry;
 mod heat_map;
 mod image;
+mod kept_image;
 mod layers;
 mod lighting;
 mod lighting_inputs;
 mod lighting_options;
+mod list_check;
 mod loop_rounds;
 pub mod ltc;
 mod materials;
@@ -60,6 +62,7 @@ pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
+pub use kept_image::KeptImage;
 pub use layers::{
     FogRecord, LayerKinds, LayerOptions, LayerSamples, MAX_FOG_PER_M, MIN_FOG_PER_M,
     ParticleRecord, visit_layer_lists,
@@ -67,6 +70,7 @@ pub use layers::{
 pub use lighting::Lighting;
 pub use lighting_inputs::{LightingRecord, SunRecord, SunsRecord};
 pub use lighting_options::{Cut, LightingOptions};
+pub use list_check::{ListCheck, ListsTruth, MissedPair};
 pub use materials::MaterialRecord;
 pub use mode::Mode;
 pub use moving_lights::MovingLights;
@@ -78,5 +82,5 @@ pub use renderer::{Renderer, record_before_lighting};
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use targets::Targets;
-pub use truth::{EDGE, LightBvh, ListsTruth, MissedPair, is_missed};
+pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

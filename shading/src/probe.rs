@@ -1,7 +1,7 @@
 //! Copies each pixel's position, normal and group from the GPU, to check lists on the CPU.
 
 use assign::{Assignment, Frame, Passes, View, entry, storage_entry};
-use bytemuck::pod_collect_to_vec;
+use bytemuck::{pod_collect_to_vec, pod_read_unaligned};
 
 use crate::{
     Renderer, ShadingError,
@@ -97,10 +97,16 @@ pub(crate) fn probe_at(
     };
     ask_captured(&mut pass, captured);
     pass.submit(renderer, frame.view.viewport)?;
-    let seen: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&seen, pixels * 32)?);
+    let seen = gpu.read(&seen, pixels * 32)?;
     let groups: Vec<u32> = pod_collect_to_vec(&gpu.read(&groups, pixels * 4)?);
-    let mut samples = Samples::default();
-    for (pixel, ([position, normal], group)) in seen.into_iter().zip(groups).enumerate() {
+    let mut samples = Samples {
+        positions: Vec::with_capacity(groups.len()),
+        normals: Vec::with_capacity(groups.len()),
+        groups: Vec::with_capacity(groups.len()),
+        pixels: Vec::with_capacity(groups.len()),
+    };
+    for (pixel, (seen, group)) in seen.chunks_exact(32).zip(groups).enumerate() {
+        let [position, normal]: [[f32; 4]; 2] = pod_read_unaligned(seen);
         if position[3] > 0.5 {
             samples.positions.push([position[0], position[1], position[2]]);
             samples.normals.push([normal[0], normal[1], normal[2]]);

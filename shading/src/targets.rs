@@ -1,6 +1,6 @@
 //! The images of a frame: depth, G-buffer, radiance.
 
-use assign::{AssignError, Gpu, Needs, View};
+use assign::{AssignError, Gpu, Needs, View, Viewport};
 
 use crate::{Mode, ShadingError, geometry::SceneGpu};
 
@@ -71,6 +71,20 @@ impl Targets {
         let what = format!("images of {width}x{height}");
         let texel = if scene.has_dielectrics() { 52 } else { 44 };
         Ok(gpu.allocate(&what, pixels * texel, || Self::make(gpu, [width, height], scene))?)
+    }
+
+    /// Refuses a viewport that the images do not hold.
+    pub(crate) fn check_holds(&self, viewport: Viewport) -> Result<(), ShadingError> {
+        let [width, height] = self.size;
+        if viewport.x.saturating_add(viewport.width) > width
+            || viewport.y.saturating_add(viewport.height) > height
+        {
+            return Err(ShadingError::Mismatch {
+                left: [viewport.width, viewport.height],
+                right: self.size,
+            });
+        }
+        Ok(())
     }
 
     /// Bytes of the images that a mode draws only for a strategy with these needs: the models of

@@ -9,6 +9,7 @@ use shading::{AreaModel, Cut, Mode};
 use super::{
     compare::CUTS,
     headings::{BOUNCE, SHADING},
+    layers::LayerArgs,
     modes::MODES,
     named::named,
     stage::StageArgs,
@@ -59,6 +60,10 @@ pub struct ExplainArgs {
     /// GPU to use, by any part of its name
     #[arg(long, display_order = 14, value_name = "NAME", value_parser = values::text)]
     pub adapter: Option<String>,
+
+    /// What is drawn over the opaque surfaces.
+    #[command(flatten)]
+    pub layers: LayerArgs,
 
     /// How to integrate the light of area lights, as for `compare` [default: ltc]
     #[arg(long, value_name = "MODEL", value_parser = values::area_model, help_heading = SHADING, hide_short_help = true)]

@@ -7,9 +7,6 @@ use super::definition;
 /// Options that the picture decides, and not the command line.
 const OWN: [&str; 6] = ["strategies", "mode", "pixel", "path", "frames", "frame"];
 
-/// Options that draw layers over the surfaces.
-const LAYERS: [&str; 3] = ["transparent", "particles", "fog"];
-
 /// What a report knows of the picture whose pixels are to be explained.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explained<'a> {
@@ -25,7 +22,7 @@ pub struct Explained<'a> {
 
 /// The words of `lightbench explain` that show pixels of a comparison, up to and including `--pixel`: what follows is
 /// the pixel. `command` is the comparison's command line, program name first. `None` if that is the command line of
-/// something else, or if layers are drawn over the pixels, which `explain` does not draw.
+/// something else.
 pub fn explain_words(command: &[String], of: &Explained<'_>) -> Option<Vec<String>> {
     let program = definition();
     let [compare, explain] =
@@ -51,9 +48,6 @@ pub fn explain_words(command: &[String], of: &Explained<'_>) -> Option<Vec<Strin
         };
         let arg = compare.get_arguments().find(|arg| arg.get_long() == Some(option))?;
         let value = if is_whole || !takes_value(arg) { None } else { Some(words.next()?) };
-        if LAYERS.contains(&option) {
-            return None;
-        }
         if is_kept(option) {
             kept.extend([word].into_iter().chain(value).cloned());
         }
@@ -93,6 +87,10 @@ mod tests {
                  --camera 1,2,3:0,0,0 --operations --no-own-lights",
                 "lightbench explain --scene a.gltf --lights=7 --camera 1,2,3:0,0,0 --no-own-lights --mode forward \
                  --strategies G/4x4x4 --pixel",
+            ),
+            (
+                "lightbench --fog 0.1 --transparent --particles=9 --truth none",
+                "lightbench explain --fog 0.1 --transparent --particles=9 --mode forward --strategies G/4x4x4 --pixel",
             ),
             ("lightbench", "lightbench explain --mode forward --strategies G/4x4x4 --pixel"),
             (

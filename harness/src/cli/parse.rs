@@ -59,7 +59,7 @@ where
         Ok(cli) => cli,
         Err(error) => return shown(error),
     };
-    let invocation = match cli.command {
+    let mut invocation = match cli.command {
         Some(Command::List { what }) => Invocation::List(what),
         Some(Command::Compare(args)) => Invocation::Compare(args),
         Some(Command::Explain(args)) => Invocation::Explain(args),
@@ -72,5 +72,10 @@ where
         Some(Command::Cdi(args)) => Invocation::Cdi(args),
         None => Invocation::Compare(cli.compare),
     };
+    match &mut invocation {
+        Invocation::Compare(args) => args.layers.add_those_of(&args.stage.scene),
+        Invocation::Explain(args) => args.layers.add_those_of(&args.stage.scene),
+        _ => {}
+    }
     Ok((invocation, Some(matches)))
 }

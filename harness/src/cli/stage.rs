@@ -73,7 +73,7 @@ pub struct StageArgs {
     #[arg(long, help_heading = SCENE, hide_short_help = true)]
     pub no_own_lights: bool,
 
-    /// Seed of the scattered lights and particles
+    /// Seed of the scattered lights and particles, and of a scenario
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed, help_heading = SCATTERED, hide_short_help = true)]
     pub seed: u64,
 

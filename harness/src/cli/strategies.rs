@@ -3,7 +3,7 @@
 use super::{CliError, CompareArgs, ExplainArgs, Size, Strategies};
 use crate::{
     choice::Choice,
-    strategy::{IdError, engines, rows},
+    strategy::{IdError, default_ids, engines, rows},
 };
 
 /// Names every strategy, at its default parameters.
@@ -44,6 +44,8 @@ impl ExplainArgs {
 fn asked(strategies: &Strategies, size: Size) -> Result<Vec<Choice>, CliError> {
     let size = [size.width, size.height];
     let mut asked = Vec::new();
+    // Nobody named those that are compared where none are.
+    let is_named = strategies.0.join(",") != default_ids();
     for id in &strategies.0 {
         if let Some(ids) = engines::expand(id, size) {
             let ids = ids.map_err(|known| {
@@ -60,7 +62,9 @@ fn asked(strategies: &Strategies, size: Size) -> Result<Vec<Choice>, CliError> {
                 asked.push(choice);
             }
         } else {
-            asked.push(Choice::parse(id)?);
+            let mut choice = Choice::parse(id)?;
+            choice.is_named = is_named;
+            asked.push(choice);
         }
     }
     Ok(asked)

@@ -8,7 +8,7 @@ use shading::{
 };
 
 use super::{
-    Asked,
+    Asked, layer_note,
     lights::{Place, entries_of, list_seen, reaching},
     mode_note,
     pixel::{
@@ -68,7 +68,8 @@ pub(super) fn draw_all(
         sample = sample.or(seen.sample);
         strategies.push(seen.strategy);
     }
-    let notes = [mode_note(args.mode), sample.as_ref().and_then(position_note)];
+    let sample_note = sample.as_ref().and_then(position_note);
+    let notes = [mode_note(args.mode), layer_note(&args.layers), sample_note];
     Ok(Explanation {
         scene: visible(&stage.scene.name).into_owned(),
         lights: stage.light_count(),

@@ -21,7 +21,7 @@ pub fn text_of(explanation: &Explanation, shows_all: bool) -> String {
     match &explanation.sample {
         Some(sample) => push_sample(&mut text, sample, explanation.lights),
         None => text.push_str(
-            "This pixel shows no surface (sky): it has no sample, reads no list, and no light adds to it.\n",
+            "This pixel shows no opaque surface (sky): it has no sample, reads no list, and no light adds to it.\n",
         ),
     }
     for strategy in &explanation.strategies {

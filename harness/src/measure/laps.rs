@@ -8,9 +8,7 @@
 //!    takes the same poses each time, so laps are repetitions of each other, as rounds are from a
 //!    still camera. Lists that are used for several frames are made anew where a lap begins.
 
-use shading::HdrImage;
-
-use super::{Compare, Contest, Timetable, read};
+use super::{Compare, Contest, Shown, Timetable};
 use crate::{error::HarnessError, schedule::Orders, stage::Stage};
 
 /// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
@@ -25,7 +23,7 @@ impl Contest<'_> {
         timetable: Timetable<'_>,
         seen: &mut Compare<'_>,
     ) -> Result<(), HarnessError> {
-        let Timetable { timed, remember, reference } = timetable;
+        let Timetable { timed, remember } = timetable;
         let count = self.plan.timed;
         let poses = SETTLING_POSES[usize::from(self.gpu.is_software())].min(count);
         for pose in 0..poses {
@@ -54,14 +52,20 @@ impl Contest<'_> {
                 }
                 continue;
             }
-            let mut images: Vec<HdrImage> = Vec::new();
+            self.draw_reference(stage)?;
+            let reference = self.reference.as_ref().map(|(method, _)| *method);
+            let mut images = Vec::new();
             for &method in timed {
+                if Some(method) == reference {
+                    images.push(Shown::Same);
+                    continue;
+                }
                 self.draw(stage, method)?;
-                images.push(read(&self.gpu, stage)?);
+                images.extend(self.look(stage)?);
             }
-            let Some(reference) = reference else { continue };
-            self.draw(stage, reference)?;
-            seen(pose, &images, &read(&self.gpu, stage)?)?;
+            if reference.is_some() {
+                seen(pose, &images)?;
+            }
             stage.count_left_out()?;
         }
         Ok(())

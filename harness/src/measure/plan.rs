@@ -12,8 +12,6 @@ pub struct Timetable<'a> {
     /// Of those, the ones whose lists depend on the frames before: along a path they must see every
     /// pose before the one that is compared.
     pub remember: &'a [usize],
-    /// The one whose image is that of no culling; `None` if images are not compared.
-    pub reference: Option<usize>,
 }
 
 /// Which frames to draw.

@@ -122,6 +122,31 @@ impl Axis {
         matches!(self, Self::Rectangle | Self::Half | Self::PlainDepth | Self::Order)
     }
 
+    /// Its name, as lists of strategies show it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slices => "slices",
+            Self::Scatter => "scatter",
+            Self::Box => "box",
+            Self::Normals => "normals",
+            Self::Specular => "specular",
+            Self::Tests => "tests",
+            Self::Source => "source",
+            Self::AreaBounds => "area-bounds",
+            Self::Storage => "storage",
+            Self::Rectangle => RECTANGLE,
+            Self::Half => HALF,
+            Self::Fewer => "fewer",
+            Self::Stochastic => STOCHASTIC,
+            Self::Reuse => REUSE,
+            Self::Keep => KEEP,
+            Self::Touched => TOUCHED,
+            Self::Order => UNORDERED,
+            Self::Cap => CAP,
+            Self::Exit => "exit",
+        }
+    }
+
     /// What its segment may be.
     pub fn accepted(self) -> &'static str {
         match self {

@@ -23,6 +23,11 @@ pub struct Flaw {
 }
 
 impl Flaw {
+    /// The options of `compare` that draw it: `--strategies T-E/32x32 --cut never`.
+    pub fn options_of_compare(&self) -> String {
+        [&["--strategies", self.id], self.options].concat().join(" ")
+    }
+
     /// Its id in an image of that width and height, pixels: those of engines' defaults depend on the size.
     pub fn id_at(&self, size_px: [u32; 2]) -> StrategyId {
         let ids = engines::expand(self.id, size_px).and_then(Result::ok).unwrap_or_default();
@@ -140,15 +145,22 @@ const FLAWS: &[Flaw] = &[
     },
 ];
 
-/// The end of what `lightbench list strategies` prints.
+/// The end of what `lightbench list strategies` prints: methods that are wrong, and engines with a limit.
 pub(super) fn list() -> String {
-    flaws().map(entry).collect()
+    let of_kind = |is_engine: bool| -> String {
+        flaws().filter(|flaw| engines::is_engine(flaw.id) == is_engine).map(entry).collect()
+    };
+    format!(
+        "Fail on purpose:\n\n{}\nDefaults of engines that lose light beyond a limit (`lightbench list engines` lists \
+         all engines):\n\n{}\nNeither are part of `all`, and no ranking picks one.\n",
+        of_kind(false),
+        of_kind(true)
+    )
 }
 
 fn entry(flaw: &Flaw) -> String {
-    let Flaw { name, id, options, fails, source } = flaw;
-    let command = [&[*id], *options].concat().join(" ");
-    format!("{command}\n    {name}: {fails}\n    {source}\n")
+    let Flaw { name, fails, source, .. } = flaw;
+    format!("{}\n    {name}: {fails}\n    {source}\n", flaw.options_of_compare())
 }
 
 impl StrategyId {

@@ -2,16 +2,25 @@
 
 use std::fmt::Write;
 
-use super::{Row, flaws, rows};
+use super::{Axis, Row, flaws, rows};
 
 /// The width of the column of ids, characters.
 const ID_WIDTH: usize = 16;
 
-/// What `lightbench list strategies` prints: all rows, and then the methods that fail on purpose.
+/// What `lightbench list strategies` prints: all rows, the segments of their ids, and then the methods that lose light.
 pub fn list() -> String {
     let rows: String = rows().map(entry).collect();
-    let heading = "Fail on purpose (`all` includes none of them, and no ranking picks one):";
-    format!("{rows}\n{heading}\n{}", flaws::list())
+    let segments: String = Axis::ALL.iter().filter(|axis| !axis.is_flaw()).map(axis).collect();
+    format!(
+        "{rows}\nSegments that an id may have, in any order, where its strategy lists them: \
+         SC-E/48x48x40/bvh\n\n{segments}\n{}",
+        flaws::list()
+    )
+}
+
+/// A segment, and what it may be.
+fn axis(axis: &Axis) -> String {
+    format!("{:<ID_WIDTH$} {}\n", axis.name(), axis.accepted())
 }
 
 fn entry(row: &Row) -> String {
@@ -27,8 +36,10 @@ fn entry(row: &Row) -> String {
     if !row.parameters.is_empty() {
         line(&format!("parameters: {}", row.parameters.join(" x ")));
     }
-    for axis in row.axes.iter().filter(|axis| !axis.is_flaw()) {
-        line(&format!("/{}", axis.accepted()));
+    let segments = row.axes.iter().filter(|axis| !axis.is_flaw());
+    let segments: Vec<&str> = segments.map(|axis| axis.name()).collect();
+    if !segments.is_empty() {
+        line(&format!("segments: {}", segments.join(", ")));
     }
     text
 }
