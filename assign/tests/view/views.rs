@@ -65,12 +65,11 @@ pub(crate) fn oblique() -> impl Strategy<Value = (View, glam::Vec4)> {
     let place = (0.0_f32..1.0, 0.0_f32..1.0, 0.05_f32..1.0);
     (plain(), unit(), place)
         .prop_map(|(view, normal, (u, v, share))| {
-            let at = window_of(&view)[0].lerp(window_of(&view)[1], 0.0);
-            let (_, max) = (at, window_of(&view)[1]);
-            let window = at + (max - at) * DVec2::new(u.into(), v.into());
-            let depth_m = view.far_m.unwrap_or(30.0 * view.near_m);
-            let depth_m =
-                view.near_m + share * (depth_m.min(100.0 * view.near_m.max(0.1)) - view.near_m);
+            let [min, max] = window_of(&view);
+            let window = min + (max - min) * DVec2::new(u.into(), v.into());
+            // Not so far that f32 cannot tell the plane's depths apart.
+            let end_m = view.far_m.unwrap_or(30.0 * view.near_m).min(100.0 * view.near_m.max(0.1));
+            let depth_m = view.near_m + share * (end_m - view.near_m);
             let point = point_view(&view, window, depth_m.into());
             let to_world = view.world_to_view.inverse();
             let point = to_world.transform_point3(point.as_vec3());
