@@ -75,7 +75,7 @@ fn two_instances_in_one_submission_are_exact_and_compile_once() {
         let before = gpu.hitches();
         let strategy = both[0].strategy.for_view(&gpu).expect("a second view");
         assert_eq!(strategy.id(), both[0].strategy.id());
-        assert_eq!(strategy.lookup().layout, both[0].strategy.lookup().layout, "{id}");
+        assert_eq!(strategy.lookup().layout(), both[0].strategy.lookup().layout(), "{id}");
         both.push(Contender { id: id.clone(), strategy, early_exit });
         // Pools grow in the second frame.
         for frame in 0..3 {
