@@ -106,7 +106,8 @@ impl Living {
 
 #[test]
 fn a_hundred_frames_of_moving_lights_and_camera_make_nothing_and_never_wait() {
-    let gpu = Gpu::open(None).expect("an adapter");
+    // What the CPU makes does not depend on what the GPU runs.
+    let gpu = Gpu::noop().expect("a device");
     let mut tested = 0;
     for order in [LightOrder::Given, LightOrder::Gpu { every: 1 }] {
         for mut contender in contenders(&gpu) {
