@@ -111,10 +111,6 @@ fn a_hundred_frames_of_moving_lights_and_camera_make_nothing_and_never_wait() {
     let mut tested = 0;
     for order in [LightOrder::Given, LightOrder::Gpu { every: 1 }] {
         for mut contender in contenders(&gpu) {
-            // They ask the CPU for lights in the order of their slots.
-            if order != LightOrder::Given && contender.id.contains("/unordered") {
-                continue;
-            }
             let mut living = Living::new(&gpu, order);
             for number in 0..WARM_UP {
                 living.draw(&mut contender, number, true);
