@@ -50,6 +50,8 @@ pub struct Culler {
     cull: ListsBindings,
     look_up: ListsBindings,
     source: KeptBindGroup,
+    /// The same for frames that cull only touched groups.
+    touched_source: KeptBindGroup,
     dispatch: Dispatch,
     lists: LightLists,
     /// Finds the groups to cull in frames with [`Frame::changes`].
@@ -106,6 +108,7 @@ impl Culler {
             cull: ListsBindings::of_kernel(gpu, label, bindings),
             look_up: ListsBindings::of_look_up(gpu, label, bindings),
             source: KeptBindGroup::default(),
+            touched_source: KeptBindGroup::default(),
             dispatch: Dispatch::Workgroups(0),
             lists: LightLists::stored_as(gpu, settings.storage)?,
             touched: None,
@@ -206,7 +209,8 @@ impl Culler {
             entries.push(texture(2, frame.depth.ok_or_else(missing)?));
         }
         let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
-        self.source.bind(gpu, "cull source", &layout, &entries);
+        let bound = if self.is_update { &mut self.touched_source } else { &mut self.source };
+        bound.bind(gpu, "cull source", &layout, &entries);
         self.dispatch = Dispatch::over(groups);
         Ok(())
     }
@@ -269,7 +273,8 @@ impl Culler {
     /// Records the pass `cull`, which a clock times, and in frames with [`Frame::changes`] the pass `touch`
     /// before it. Call it after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
-        let (Some(kernel), Some(source)) = (&self.kernel, self.source.get()) else { return };
+        let bound = if self.is_update { &self.touched_source } else { &self.source };
+        let (Some(kernel), Some(source)) = (&self.kernel, bound.get()) else { return };
         let groups = [self.frame.bind_group(), self.cull.bind_group()];
         match &self.touched {
             Some(touched) if self.is_update => {

@@ -6,6 +6,8 @@ use crate::{AssignError, Gpu};
 pub fn storage_buffer_limits(storage_buffers: u32) -> wgpu::Limits {
     wgpu::Limits {
         max_storage_buffers_per_shader_stage: storage_buffers,
+        // What WebGPU promises.
+        max_compute_workgroup_storage_size: 16_384,
         ..wgpu::Limits::downlevel_defaults()
     }
 }

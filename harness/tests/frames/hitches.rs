@@ -106,14 +106,11 @@ impl Living {
 
 #[test]
 fn a_hundred_frames_of_moving_lights_and_camera_make_nothing_and_never_wait() {
-    let gpu = Gpu::open(None).expect("an adapter");
+    // What the CPU makes does not depend on what the GPU runs.
+    let gpu = Gpu::noop().expect("a device");
     let mut tested = 0;
     for order in [LightOrder::Given, LightOrder::Gpu { every: 1 }] {
         for mut contender in contenders(&gpu) {
-            // They ask the CPU for lights in the order of their slots.
-            if order != LightOrder::Given && contender.id.contains("/unordered") {
-                continue;
-            }
             let mut living = Living::new(&gpu, order);
             for number in 0..WARM_UP {
                 living.draw(&mut contender, number, true);
