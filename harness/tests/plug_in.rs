@@ -67,7 +67,8 @@ fn every_look_up_validates_inside_a_renderer() {
                 (group == view.0 && (view.1..view.1 + 4).contains(&binding))
                     || (group == 0 && (5..apart).contains(&binding))
             };
-            assert!(bound.clone().all(is_placed), "{id}: {:?}", bound.collect::<Vec<_>>());
+            let bound: Vec<_> = bound.collect();
+            assert!(bound.iter().all(|&at| is_placed(at)), "{id}: {bound:?}");
             if prefix == "lb_" {
                 LinkedModule::new(id, &(text + RENDERER));
             }
