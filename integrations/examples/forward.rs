@@ -363,7 +363,7 @@ impl Forward {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let gpu = open_device()?;
-    let size = [768, 320];
+    let size = [512, 192];
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
     // integration: begin
     let clusters = |gpu: &Gpu, bounds, occupancy| -> Result<Box<dyn Assignment>, AssignError> {
@@ -381,7 +381,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target = Target::new(&gpu, format, size);
     let mut lights =
         LightBuffer::ordered(&gpu, &lights_at(0.0, 300), LightOrder::Gpu { every: 1 })?;
-    for frame in 0..30 {
+    for frame in 0..8 {
         lights.update(&gpu, &lights_at(frame as f32 / 30.0, 300))?;
         renderer.draw(&gpu, &target, &lights, &split_screen(size), false)?;
     }
