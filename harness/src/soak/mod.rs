@@ -19,8 +19,8 @@
 //! Every tenth round draws the first one again, to see whether memory grew, so nine in ten frames are new.
 //!
 //! The device and its compiled shaders are kept for `REOPEN_EVERY` rounds. Then the device is opened anew, because
-//! every combination of axes has shaders of its own, which would pile up. A test loses a device on purpose
-//! (`tests/device_loss.rs`).
+//! every combination of axes has shaders of its own, which would pile up. Device loss is not simulated here;
+//! `tests/device_loss.rs` is an ignored test of it, which fails.
 //!
 //! Rounds do not depend on each other, so processes can share a soak: each takes some of the frames by `--from`.
 
