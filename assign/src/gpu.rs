@@ -212,10 +212,15 @@ impl Gpu {
     /// Maps a staging buffer after its copy was submitted, and returns its bytes.
     pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, AssignError> {
         let (sender, receiver) = std::sync::mpsc::channel();
-        self.counted.map(staging, None, move |result| {
+        let done = move |result| {
             // The receiver lives until the wait below returns.
             let _ = sender.send(result);
-        });
+        };
+        // A lost device refuses to map.
+        let map = || self.counted.map(staging, None, done);
+        if let (_, Some(error)) = self.scoped(wgpu::ErrorFilter::Validation, map) {
+            return Err(AssignError::Device(error.to_string()));
+        }
         self.wait()?;
         receiver
             .recv()

@@ -41,7 +41,6 @@ fn stage_args() -> StageArgs {
 }
 
 #[test]
-#[ignore = "fails: `Gpu::map` panics without an error handler, because it maps a buffer of a lost device outside an error scope"]
 fn a_lost_device_gives_errors_and_no_picture() {
     // Not a bench, which ends the program when the device reports an error.
     let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
