@@ -2,12 +2,13 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu, Groups,
-    LightLists, Lookup, Needs, Passes, StrategyModule, entry, storage_entry, uniform_entry,
+    LightLists, Lookup, Needs, Passes, SampleDomain, StrategyModule, entry, storage_entry,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
-    Normals, Occupancy,
+    Occupancy,
     cluster_options::ClusterOptions,
     cluster_wesl::cluster_wesl,
     froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform},
@@ -85,6 +86,34 @@ impl Clustered {
     }
 }
 
+/// What the pass `bounds` reads.
+fn read_images<'a>(
+    options: &ClusterOptions,
+    id: &str,
+    frame: &Frame<'a>,
+) -> Result<Images<'a>, AssignError> {
+    if !options.normals.is_some() {
+        let mut depths = frame.surface_and_layer_depths(id)?;
+        if options.occupancy == Occupancy::DepthAware {
+            // One workgroup reads one tile of one image. Samples of layers read all lights.
+            depths.truncate(1);
+        }
+        return Ok(Images { depths, normals: None, base_color: None });
+    }
+    let reason =
+        "its groups are split by the normals in the G-buffer, and these samples have others";
+    frame.check_domain(id, &[SampleDomain::OpaqueSurfaces], reason)?;
+    let reason = "the G-buffer has one normal per pixel";
+    Ok(Images {
+        depths: vec![frame.surface_depth(id)?.with_one_sample(reason)?],
+        normals: Some(frame.normal_image(id)?),
+        base_color: match options.cut.is_glossy() {
+            false => None,
+            true => Some(frame.base_color_image(id)?),
+        },
+    })
+}
+
 impl Assignment for Clustered {
     fn id(&self) -> String {
         let ClusterOptions { size, slices, normals, cut, settings, .. } = self.options;
@@ -125,22 +154,11 @@ impl Assignment for Clustered {
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();
+        let mut images = None;
         if let Some(gather) = &mut self.gather {
-            let depth = frame.surface_depth(&id)?;
-            let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
-            let images = Images {
-                depth,
-                normals: match self.options.normals {
-                    Normals::None => None,
-                    Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
-                },
-                base_color: match self.options.cut.is_glossy() {
-                    false => None,
-                    true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
-                },
-            };
+            let read = images.insert(read_images(&self.options, &id, frame)?);
             froxels.surfaces_only = 1;
-            gather.prepare(gpu, frame, images, (&froxels, [&self.froxels, &self.bins]), count)?;
+            gather.prepare(gpu, frame, &read.depths[0], &froxels, count)?;
             if self.options.occupancy.is_sparse() {
                 groups = Groups::Live { count, live: gather.live() };
             }
@@ -154,7 +172,12 @@ impl Assignment for Clustered {
             gpu.queue.write_buffer(&self.bins, 0, bytes_of(&bins));
             resources.push(entry(BINS_BINDING, &self.bins));
         }
-        self.culler.prepare(gpu, frame, groups, &resources)
+        self.culler.prepare(gpu, frame, groups, &resources)?;
+        if let (Some(gather), Some(images)) = (&mut self.gather, &images) {
+            let lists = self.culler.lists().lists();
+            gather.bind(gpu, images, [&self.froxels, &self.bins], lists);
+        }
+        Ok(())
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {

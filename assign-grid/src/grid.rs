@@ -103,9 +103,9 @@ impl Grid {
             gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
             return Ok(cells.group_count());
         };
-        let depth = frame.surface_depth(&id)?;
+        let depths = frame.surface_and_layer_depths(&id)?;
         let lights = frame.light_bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
-        visible.prepare(gpu, frame, depth, AskedCells::new(self.counts, lights))?;
+        visible.prepare(gpu, frame, &depths, AskedCells::new(self.counts, lights))?;
         Ok(self.counts.0.iter().product())
     }
 }

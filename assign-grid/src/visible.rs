@@ -2,8 +2,8 @@
 //! CPU reads nothing back.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, Passes, Shader, View, entry, kernel, storage_entry,
-    texture, texture_entry, uniform_entry,
+    AssignError, DepthImage, Frame, FrameBindings, Gpu, Passes, Shader, View, entry, kernel,
+    storage_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::Vec3;
@@ -52,62 +52,84 @@ impl AskedCells {
 #[derive(Debug)]
 pub(crate) struct VisibleBox {
     frame: FrameBindings,
-    layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
-    /// Kernels in their order.
-    clear: wgpu::ComputePipeline,
-    find: wgpu::ComputePipeline,
-    cut: wgpu::ComputePipeline,
+    kernels: Kernels,
+    /// Of the depth buffer, and of each layer.
+    bind_groups: Vec<wgpu::BindGroup>,
     found: wgpu::Buffer,
     asked: wgpu::Buffer,
     made: wgpu::Buffer,
 }
 
-impl VisibleBox {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+/// The kernels in their order, for depth with one or with several samples per pixel.
+#[derive(Debug)]
+struct Kernels {
+    multisampled: bool,
+    layout: wgpu::BindGroupLayout,
+    clear: wgpu::ComputePipeline,
+    find: wgpu::ComputePipeline,
+    cut: wgpu::ComputePipeline,
+}
+
+impl Kernels {
+    fn new(
+        gpu: &Gpu,
+        multisampled: bool,
+        frame: &wgpu::BindGroupLayout,
+    ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let layout = gpu.bind_group_layout(
             "visible box",
             &[
-                texture_entry(0, stages, wgpu::TextureSampleType::Depth),
+                DepthImage::layout(0, stages, multisampled),
                 storage_entry(1, stages, false),
                 uniform_entry(2, stages),
                 storage_entry(3, stages, false),
             ],
         );
-        let frame = FrameBindings::new(gpu);
-        // SAFETY: its loop counts up to a constant.
-        #[allow(unsafe_code, reason = "its loop ends")]
-        let module = unsafe { bounds_shader().create_uncounted(gpu, "package::visible") }?;
-        let layouts = [frame.layout(), &layout];
+        let shader = bounds_shader(multisampled);
+        // SAFETY: its loops count up to a constant, or to the number of samples of a pixel.
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module = unsafe { shader.create_uncounted(gpu, "package::visible") }?;
+        let layouts = [frame, &layout];
         let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let [clear, find, cut] = ["clear_box", "find_box", "cut_box"].map(pipeline);
+        Ok(Self { multisampled, layout, clear, find, cut })
+    }
+}
+
+impl VisibleBox {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let frame = FrameBindings::new(gpu);
         Ok(Self {
+            kernels: Kernels::new(gpu, false, frame.layout())?,
             frame,
-            layout,
-            bind_group: None,
-            clear,
-            find,
-            cut,
+            bind_groups: Vec::new(),
             found: gpu.storage("visible box", 6 * 4)?,
             asked: gpu.uniform("asked cells", size_of::<AskedCells>() as u64),
             made: gpu.storage("made cells", size_of::<CellsUniform>() as u64)?,
         })
     }
 
-    /// Uploads what is asked for, and binds the depth buffer: outside the clock.
+    /// Uploads what is asked for, and binds the depth buffer and the depths of layers: outside the clock.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        depth: &wgpu::TextureView,
+        depths: &[DepthImage],
         asked: AskedCells,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
         gpu.queue.write_buffer(&self.asked, 0, bytes_of(&asked));
-        let entries =
-            [texture(0, depth), entry(1, &self.found), entry(2, &self.asked), entry(3, &self.made)];
-        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
+        let multisampled = depths.iter().any(DepthImage::is_multisampled);
+        if multisampled != self.kernels.multisampled {
+            self.kernels = Kernels::new(gpu, multisampled, self.frame.layout())?;
+        }
+        let bind = |depth: &DepthImage| {
+            let buffers = [entry(1, &self.found), entry(2, &self.asked), entry(3, &self.made)];
+            let entries = [&[depth.entry(0)], &buffers[..]].concat();
+            kernel::bind_entries(gpu, &self.kernels.layout, &entries)
+        };
+        self.bind_groups = depths.iter().map(bind).collect();
         Ok(())
     }
 
@@ -115,13 +137,16 @@ impl VisibleBox {
     pub(crate) fn record(&self, view: &View, cells: &wgpu::Buffer, passes: &mut dyn Passes) {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(BOUNDS_GROUP, self.bind_group.as_ref(), &[]);
-            pass.set_pipeline(&self.clear);
+            pass.set_bind_group(BOUNDS_GROUP, self.bind_groups.first(), &[]);
+            pass.set_pipeline(&self.kernels.clear);
             pass.dispatch_workgroups(1, 1, 1);
-            pass.set_pipeline(&self.find);
+            pass.set_pipeline(&self.kernels.find);
             let [across, down] = surface::blocks(view);
-            pass.dispatch_workgroups(across, down, 1);
-            pass.set_pipeline(&self.cut);
+            for depth in &self.bind_groups {
+                pass.set_bind_group(BOUNDS_GROUP, depth, &[]);
+                pass.dispatch_workgroups(across, down, 1);
+            }
+            pass.set_pipeline(&self.kernels.cut);
             pass.dispatch_workgroups(1, 1, 1);
         });
         // A kernel cannot write a uniform.
@@ -136,14 +161,15 @@ impl VisibleBox {
 }
 
 /// The pass's shader.
-fn bounds_shader() -> Shader<'static> {
+fn bounds_shader(multisampled: bool) -> Shader<'static> {
     Shader::new(BOUNDS_GROUP)
         .module("package::visible", include_str!("shaders/visible.wesl"))
         .module(SURFACE.0, SURFACE.1)
         .strategy(GRID_WESL)
+        .flag("multisampled", multisampled)
 }
 
 /// The linked WGSL of the pass, for tests of layout and of what it makes.
-pub fn visible_source() -> Result<String, AssignError> {
-    bounds_shader().link("package::visible")
+pub fn visible_source(multisampled: bool) -> Result<String, AssignError> {
+    bounds_shader(multisampled).link("package::visible")
 }

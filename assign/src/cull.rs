@@ -5,10 +5,10 @@
 //! lists.
 
 use crate::{
-    AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
-    Storage, StrategyModule, StrategyWesl,
-    entries::{entry, storage_entry, texture, texture_entry},
+    AreaBounds, AssignError, CullSettings, DepthImage, Facing, Frame, FrameBindings, Gpu,
+    GroupShape, Groups, LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup,
+    Passes, Shader, Storage, StrategyModule, StrategyWesl,
+    entries::{entry, storage_entry},
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
 
@@ -185,6 +185,7 @@ impl Culler {
         frame: &Frame<'_>,
         groups: Groups<'_>,
     ) -> Result<Source, AssignError> {
+        let mut depth = None;
         let mut entries = Vec::new();
         if let Groups::Live { live, .. } = groups {
             entries.push(entry(0, live.buffer()));
@@ -193,9 +194,7 @@ impl Culler {
             entries.push(entry(1, frame.lights.nodes()));
         }
         if self.module.wesl().finds_bounds_by_lanes() {
-            let strategy = self.label.clone();
-            let missing = || AssignError::Missing { strategy, missing: "depth" };
-            entries.push(texture(2, frame.depth.ok_or_else(missing)?));
+            entries.push(depth.insert(frame.depth_image(&self.label)?).entry(2));
         }
         let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -218,7 +217,7 @@ impl Culler {
             entries.push(storage_entry(1, stages, true));
         }
         if self.module.wesl().finds_bounds_by_lanes() {
-            entries.push(texture_entry(2, stages, wgpu::TextureSampleType::Depth));
+            entries.push(DepthImage::layout(2, stages, false));
         }
         gpu.bind_group_layout("cull source", &entries)
     }

@@ -1,8 +1,8 @@
 //! The passes of HG: what they bind, and the order in which they run.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, LightKinds, LightLists, ListsBindings, Passes,
-    SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, DepthImage, Frame, FrameBindings, Gpu, LightKinds, LightLists, ListsBindings,
+    Passes, SampleDomain, entry, kernel, storage_entry, uniform_entry,
 };
 
 use super::{
@@ -27,12 +27,11 @@ pub(crate) struct HybridPasses {
     cells_layout: wgpu::BindGroupLayout,
     cells_bind_group: Option<wgpu::BindGroup>,
     lists: ListsBindings,
-    depth_layout: wgpu::BindGroupLayout,
+    occupancy: Occupancy,
     depth_bind_group: Option<wgpu::BindGroup>,
     /// The live cells: first as `clear` and `reserve_lists` write them, then as `sort` reads them.
     live_layouts: [wgpu::BindGroupLayout; 2],
     live_bind_groups: Option<[wgpu::BindGroup; 2]>,
-    occupancy: wgpu::ComputePipeline,
     clear: wgpu::ComputePipeline,
     reserve: wgpu::ComputePipeline,
     sort: wgpu::ComputePipeline,
@@ -51,25 +50,19 @@ impl HybridPasses {
         let uniforms = [uniform_entry(3, uniform_stages), uniform_entry(PARTS, uniform_stages)];
         let cells = cells_entries(uniform_stages, scatter.stages());
         let cells_layout = gpu.bind_group_layout("hybrid cells", &[&uniforms, &cells[..]].concat());
-        let depth_layout = gpu.bind_group_layout(
-            "hybrid depth",
-            &[texture_entry(0, stages, wgpu::TextureSampleType::Depth)],
-        );
         let live_layouts = [false, true].map(|read_only| {
             gpu.bind_group_layout("hybrid live", &[storage_entry(0, stages, read_only)])
         });
         let bound_lists =
             ListsBindings::of_kernel(gpu, "hybrid lists", &cells_entries(stages, stages));
         let kinds = LightKinds::default();
-        let occupancy = HybridShader::Occupancy.create(gpu, kinds)?;
         let reserve = HybridShader::Reserve.create(gpu, kinds)?;
         let sort = HybridShader::Sort.create(gpu, kinds)?;
-        let depth_groups = [frame.layout(), &cells_layout, &depth_layout];
         let [written, read_only] = &live_layouts;
         let reserve_groups = [None, Some(bound_lists.layout()), Some(written)];
         let sort_groups = [None, Some(bound_lists.layout()), Some(read_only)];
         Ok(Self {
-            occupancy: kernel::pipeline(gpu, &occupancy, "occupancy", &depth_groups),
+            occupancy: Occupancy::new(gpu, false, [frame.layout(), &cells_layout])?,
             clear: kernel::pipeline(gpu, &reserve, "clear", &reserve_groups),
             reserve: kernel::pipeline(gpu, &reserve, "reserve_lists", &reserve_groups),
             sort: kernel::pipeline(gpu, &sort, "sort_lists", &sort_groups),
@@ -77,7 +70,6 @@ impl HybridPasses {
             cells_layout,
             cells_bind_group: None,
             lists: bound_lists,
-            depth_layout,
             depth_bind_group: None,
             live_layouts,
             live_bind_groups: None,
@@ -97,9 +89,15 @@ impl HybridPasses {
         froxels: &FroxelsUniform,
         uniform: &wgpu::Buffer,
         lists: &LightLists,
-        depth: Option<&wgpu::TextureView>,
+        depth: Option<&DepthImage>,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
+        if let Some(depth) = depth
+            && depth.is_multisampled() != self.occupancy.multisampled
+        {
+            let layouts = [self.frame.layout(), &self.cells_layout];
+            self.occupancy = Occupancy::new(gpu, depth.is_multisampled(), layouts)?;
+        }
         let parts = HybridParts::new(froxels);
         self.buffers.grow(gpu, froxels, parts, lists)?;
         self.bind(gpu, uniform, lists, depth);
@@ -121,7 +119,7 @@ impl HybridPasses {
         gpu: &Gpu,
         uniform: &wgpu::Buffer,
         lists: &LightLists,
-        depth: Option<&wgpu::TextureView>,
+        depth: Option<&DepthImage>,
     ) {
         let Buffers { parts, masks, cursors, unsorted, live } = &self.buffers;
         let cells = [
@@ -138,7 +136,7 @@ impl HybridPasses {
         self.live_bind_groups =
             Some([written, read].map(|layout| kernel::bind_buffers(gpu, layout, &[live.buffer()])));
         self.depth_bind_group =
-            depth.map(|view| kernel::bind_entries(gpu, &self.depth_layout, &[texture(0, view)]));
+            depth.map(|depth| kernel::bind_entries(gpu, &self.occupancy.layout, &[depth.entry(0)]));
     }
 
     /// Records the passes: inside the clock, after [`prepare`](Self::prepare).
@@ -152,7 +150,7 @@ impl HybridPasses {
             if reads_depth {
                 self.bind_cells(pass);
                 pass.set_bind_group(2, self.depth_bind_group.as_ref(), &[]);
-                pass.set_pipeline(&self.occupancy);
+                pass.set_pipeline(&self.occupancy.pipeline);
                 pass.dispatch_workgroups(sizes.blocks[0], sizes.blocks[1], 1);
             }
         });
@@ -194,6 +192,29 @@ impl HybridPasses {
         pass.set_bind_group(LISTS_GROUP, self.lists.bind_group(), &[]);
         let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
         pass.set_bind_group(2, live, &[]);
+    }
+}
+
+/// The kernel that reads the depth buffer.
+#[derive(Debug)]
+struct Occupancy {
+    multisampled: bool,
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Occupancy {
+    fn new(
+        gpu: &Gpu,
+        multisampled: bool,
+        [frame, cells]: [&wgpu::BindGroupLayout; 2],
+    ) -> Result<Self, AssignError> {
+        let entries = [DepthImage::layout(0, wgpu::ShaderStages::COMPUTE, multisampled)];
+        let layout = gpu.bind_group_layout("hybrid depth", &entries);
+        let shader = HybridShader::Occupancy { multisampled };
+        let module = shader.create(gpu, LightKinds::default())?;
+        let pipeline = kernel::pipeline(gpu, &module, "occupancy", &[frame, cells, &layout]);
+        Ok(Self { multisampled, layout, pipeline })
     }
 }
 
