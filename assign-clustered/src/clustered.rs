@@ -149,6 +149,7 @@ impl Assignment for Clustered {
             frame.view,
             frame.light_bounds(),
         )?;
+        froxels.serve(frame, &self.id())?;
         let count =
             group_count(self.options.size, &froxels, self.options.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);

@@ -112,6 +112,7 @@ impl Assignment for Tiled {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut tiles = TilesUniform::new(self.size, frame.view);
+        tiles.serve(frame, &self.id())?;
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
         if self.is_explicit() {
             let depth = self.depth_of(frame)?;

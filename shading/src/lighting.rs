@@ -77,6 +77,9 @@ impl Lighting {
                 .into());
             }
         }
+        if !mode.is_forward() {
+            renderer.check_one_sample("deferred shading")?;
+        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;

@@ -63,6 +63,7 @@ impl Assignment for HybridGrid {
         frame.view.check()?;
         let mut froxels =
             FroxelsUniform::new(self.size, Slices::default(), frame.view, frame.lights.bounds())?;
+        froxels.serve(frame, &self.id())?;
         // Cells that only other samples can lie in would have no lists.
         let depth = match frame.samples {
             SampleDomain::OpaqueSurfaces => Some(frame.depth_image(&self.id())?),
