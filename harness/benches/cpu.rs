@@ -17,8 +17,7 @@ fn scene(criterion: &mut Criterion) {
     criterion.bench_function("scene/atrium", |bencher| bencher.iter(|| atrium(black_box(1))));
     let scene = atrium(1);
     criterion.bench_function("path/atrium/1200 frames", |bencher| {
-        bencher
-            .iter(|| (0..1200).map(|frame| scene.path.pose(frame, 1200).eye).sum::<glam::Vec3>());
+        bencher.iter(|| (0..1200).map(|frame| scene.path.pose(frame, 1200).eye).sum::<Vec3>());
     });
 }
 
