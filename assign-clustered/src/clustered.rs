@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu, Groups,
-    LightLists, LightTraits, Lookup, Needs, Passes, StrategyModule, entry, storage_entry,
-    uniform_entry,
+    LightLists, LightTraits, Lookup, Needs, Passes, SampleDomain, StrategyModule, entry,
+    storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -109,6 +109,33 @@ fn bindings(options: &ClusterOptions) -> Vec<wgpu::BindGroupLayoutEntry> {
     bindings
 }
 
+/// What the pass `bounds` reads.
+fn read_images<'a>(
+    options: &ClusterOptions,
+    id: &str,
+    frame: &Frame<'a>,
+) -> Result<Images<'a>, AssignError> {
+    if !options.reads_normals() {
+        let mut depths = frame.surface_and_layer_depths(id)?;
+        if options.occupancy == Occupancy::DepthAware {
+            // One workgroup reads one tile of one image. Samples of layers read all lights.
+            depths.truncate(1);
+        }
+        return Ok(Images { depths, normals: None, base_color: None });
+    }
+    let reason = "its lists depend on the normals in the G-buffer, and these samples have others";
+    frame.check_domain(id, &[SampleDomain::OpaqueSurfaces], reason)?;
+    let reason = "the G-buffer has one normal per pixel";
+    Ok(Images {
+        depths: vec![frame.surface_depth(id)?.with_one_sample(reason)?],
+        normals: Some(frame.normal_image(id)?),
+        base_color: match options.reads_materials() {
+            false => None,
+            true => Some(frame.base_color_image(id)?),
+        },
+    })
+}
+
 impl Assignment for Clustered {
     fn id(&self) -> String {
         let ClusterOptions { size, slices, normals, cut, reach, settings, .. } = self.options;
@@ -158,30 +185,19 @@ impl Assignment for Clustered {
             frame.view,
             frame.light_bounds(),
         )?;
+        froxels.serve(frame, &self.id())?;
         let count =
             group_count(self.options.size, &froxels, self.options.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();
+        let mut images = None;
         if let Some(gather) = &mut self.gather {
-            let depth = frame.surface_depth(&id)?;
-            let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
-            let images = Images {
-                depth,
-                normals: match self.options.reads_normals() {
-                    false => None,
-                    true => Some(frame.normals.ok_or_else(|| missing("normals"))?),
-                },
-                base_color: match self.options.reads_materials() {
-                    false => None,
-                    true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
-                },
-            };
+            let read = images.insert(read_images(&self.options, &id, frame)?);
             froxels.surfaces_only = 1;
             froxels.specular_reach = self.options.reach.unwrap_or(1.0);
-            let bins = self.options.normals.is_some().then_some(&self.bins);
             let writes = self.culler.writes_mut();
-            gather.prepare(gpu, frame, images, (&froxels, (&self.froxels, bins)), count, writes)?;
+            gather.prepare(gpu, frame, &read.depths[0], &froxels, count, writes)?;
             if self.options.occupancy.is_sparse() {
                 groups = Groups::Live { count, live: gather.live() };
             }
@@ -195,7 +211,13 @@ impl Assignment for Clustered {
             self.culler.writes_mut().write(&self.bins, 0, bytes_of(&bins))?;
             resources.push(entry(BINS_BINDING, &self.bins));
         }
-        self.culler.prepare(gpu, frame, groups, &resources)
+        self.culler.prepare(gpu, frame, groups, &resources)?;
+        if let (Some(gather), Some(images)) = (&mut self.gather, &images) {
+            let lists = self.culler.lists().lists();
+            let bins = self.options.normals.is_some().then_some(&self.bins);
+            gather.bind(gpu, images, (&self.froxels, bins), lists);
+        }
+        Ok(())
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {

@@ -2,8 +2,9 @@
 //! normals.
 
 use assign::{
-    AssignError, Bounds, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LiveGroups, Passes,
-    Shader, UNFILTERED, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Bounds, DepthBindGroups, DepthImage, DepthKernels, Frame, FrameBindings,
+    FrameWrites, Gpu, KeptBindGroup, LiveGroups, Passes, Shader, UNFILTERED, entry, kernel,
+    storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{
@@ -18,6 +19,9 @@ const GATHER_GROUP: u32 = 1;
 /// Bind group of the live groups.
 const LIVE_GROUP: u32 = 2;
 
+/// Binding of the records of lists in [`GATHER_GROUP`].
+const LISTS_BINDING: u32 = 7;
+
 /// Width and height of the block that one workgroup reads, pixels: `BLOCK_PX` of `gather.wesl`.
 const BLOCK_PX: u32 = 32;
 
@@ -27,94 +31,117 @@ const CLEARED: u32 = 256;
 /// Reads the depth buffer once; also normals and base colours if it was made for them.
 #[derive(Debug)]
 pub(crate) struct Gather {
+    options: ClusterOptions,
     /// [`marks_words`].
     words: u64,
     frame: FrameBindings,
-    layout: wgpu::BindGroupLayout,
-    bound: KeptBindGroup,
+    kernels: DepthKernels<Kernels>,
+    /// Of the depth buffer, and of each layer.
+    bound: DepthBindGroups,
     bound_live: KeptBindGroup,
     live_layout: wgpu::BindGroupLayout,
-    clear: wgpu::ComputePipeline,
-    gather: wgpu::ComputePipeline,
     marks: wgpu::Buffer,
     live: LiveGroups,
     clear_workgroups: u32,
     /// Workgroups of `gather` along x and y.
     workgroups: [u32; 2],
-    occupancy: Occupancy,
 }
 
-impl Gather {
-    pub(crate) fn new(gpu: &Gpu, options: &ClusterOptions) -> Result<Self, AssignError> {
-        let ClusterOptions { bounds, occupancy, normals, .. } = *options;
+/// The kernels for depth with one or with several samples per pixel.
+#[derive(Debug)]
+struct Kernels {
+    layout: wgpu::BindGroupLayout,
+    clear: wgpu::ComputePipeline,
+    gather: wgpu::ComputePipeline,
+}
+
+impl Kernels {
+    fn new(
+        gpu: &Gpu,
+        options: &ClusterOptions,
+        multisampled: bool,
+        [frame, live]: [&wgpu::BindGroupLayout; 2],
+    ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let mut entries = vec![
-            texture_entry(0, stages, wgpu::TextureSampleType::Depth),
+            DepthImage::layout(0, stages, multisampled),
             uniform_entry(FROXELS_BINDING, stages),
         ];
-        let per_tile = occupancy == Occupancy::DepthAware;
-        // One workgroup per tile keeps marks to itself, and stores only boxes.
-        let has_marks = !per_tile || bounds == Bounds::Explicit;
-        if has_marks {
+        if has_marks(options) {
             entries.push(storage_entry(1, stages, false));
         }
         if options.reads_normals() {
             entries.push(texture_entry(2, stages, UNFILTERED));
         }
-        if normals.is_some() {
+        if options.normals.is_some() {
             entries.push(uniform_entry(BINS_BINDING, stages));
         }
         if options.reads_materials() {
             entries.push(texture_entry(3, stages, UNFILTERED));
         }
+        if options.occupancy.is_sparse() {
+            entries.push(storage_entry(LISTS_BINDING, stages, false));
+        }
         let layout = gpu.bind_group_layout("gather", &entries);
-        let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
-        let frame = FrameBindings::new(gpu);
-        let shader = gather_shader(options);
+        let shader = gather_shader(options, multisampled);
         // SAFETY: a loop counts up to a constant, or to the length of a buffer by a step of at least one
         // workgroup, or over slices, at most 1,024, or over cells along an edge, at most 3, or over the pixels of
-        // a lane, at most 64 along each side.
+        // a lane, at most 64 along each side, or over the samples of a pixel.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { shader.create_uncounted(gpu, root(occupancy)) }?;
-        let layouts = [frame.layout(), &layout, &live_layout];
+        let module = unsafe { shader.create_uncounted(gpu, root(options.occupancy)) }?;
+        let layouts = [frame, &layout, live];
         let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
+        Ok(Self { layout, clear, gather })
+    }
+}
+
+impl Gather {
+    pub(crate) fn new(gpu: &Gpu, options: &ClusterOptions) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
+        let frame = FrameBindings::new(gpu);
         Ok(Self {
-            words: if has_marks { marks_words(options).into() } else { 0 },
+            options: *options,
+            words: if has_marks(options) { marks_words(options).into() } else { 0 },
+            kernels: DepthKernels::new(Kernels::new(
+                gpu,
+                options,
+                false,
+                [frame.layout(), &live_layout],
+            )?),
             frame,
-            layout,
-            bound: KeptBindGroup::default(),
+            bound: DepthBindGroups::default(),
             bound_live: KeptBindGroup::default(),
             live_layout,
-            clear,
-            gather,
             marks: gpu.storage("cluster marks", 0)?,
             live: LiveGroups::new(gpu)?,
             clear_workgroups: 0,
             workgroups: [0; 2],
-            occupancy,
         })
     }
 
-    /// Sizes buffers for `count` groups and binds them: outside the clock. `uniforms` are those of froxels and
-    /// of bins; only clusters that are split by normals have the latter.
+    /// Sizes buffers for `count` groups, and compiles for the depth buffer: outside the clock.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        images: Images<'_>,
-        (froxels, uniforms): (&FroxelsUniform, (&wgpu::Buffer, Option<&wgpu::Buffer>)),
+        depth: &DepthImage,
+        froxels: &FroxelsUniform,
         count: u32,
         writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
         self.frame.update_in(gpu, frame, writes)?;
+        let layouts = [self.frame.layout(), &self.live_layout];
+        let make = || Kernels::new(gpu, &self.options, true, layouts);
+        self.kernels.choose(depth, make)?;
         let marks = u64::from(count) * self.words;
         if self.marks.size() < marks * 4 {
             self.marks = gpu.storage("cluster marks", marks * 4)?;
         }
         // The kernel clears the whole buffer, which may have grown for a larger view.
         let blocks = |pixels: u32| pixels.div_ceil(BLOCK_PX);
-        (self.clear_workgroups, self.workgroups) = match self.occupancy {
+        (self.clear_workgroups, self.workgroups) = match self.options.occupancy {
             Occupancy::DepthAware => (1, [froxels.counts[0], froxels.counts[1]]),
             Occupancy::Dense | Occupancy::Sparse => (
                 kernel::workgroups(self.marks.size() / 4, CLEARED),
@@ -122,29 +149,48 @@ impl Gather {
             ),
         };
         self.live.prepare(gpu, count)?;
-        let mut entries = vec![texture(0, images.depth), entry(FROXELS_BINDING, uniforms.0)];
-        if self.words > 0 {
-            entries.push(entry(1, &self.marks));
-        }
-        entries.extend(images.normals.map(|view| texture(2, view)));
-        entries.extend(uniforms.1.map(|bins| entry(BINS_BINDING, bins)));
-        entries.extend(images.base_color.map(|view| texture(3, view)));
-        self.bound.bind(gpu, "gather", &self.layout, &entries);
         let live = [entry(0, self.live.buffer())];
         self.bound_live.bind(gpu, "live groups", &self.live_layout, &live);
         Ok(())
     }
 
+    /// Binds the images, the uniforms of froxels and of bins, and the records of the prepared lists: outside the
+    /// clock. Only clusters that are split by normals have bins.
+    pub(crate) fn bind(
+        &mut self,
+        gpu: &Gpu,
+        images: &Images<'_>,
+        uniforms: (&wgpu::Buffer, Option<&wgpu::Buffer>),
+        lists: &wgpu::Buffer,
+    ) {
+        let mut shared = vec![entry(FROXELS_BINDING, uniforms.0)];
+        if self.words > 0 {
+            shared.push(entry(1, &self.marks));
+        }
+        shared.extend(images.normals.map(|view| texture(2, view)));
+        shared.extend(uniforms.1.map(|bins| entry(BINS_BINDING, bins)));
+        shared.extend(images.base_color.map(|view| texture(3, view)));
+        if self.options.occupancy.is_sparse() {
+            shared.push(entry(LISTS_BINDING, lists));
+        }
+        let layout = &self.kernels.chosen().layout;
+        self.bound.bind(gpu, "gather", layout, &images.depths, &shared);
+    }
+
     /// Records the pass `bounds`: inside the clock.
     pub(crate) fn record(&self, passes: &mut dyn Passes) {
+        let kernels = self.kernels.chosen();
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(GATHER_GROUP, self.bound.get(), &[]);
+            pass.set_bind_group(GATHER_GROUP, self.bound.groups().next(), &[]);
             pass.set_bind_group(LIVE_GROUP, self.bound_live.get(), &[]);
-            pass.set_pipeline(&self.clear);
+            pass.set_pipeline(&kernels.clear);
             pass.dispatch_workgroups(self.clear_workgroups, 1, 1);
-            pass.set_pipeline(&self.gather);
-            pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
+            pass.set_pipeline(&kernels.gather);
+            for depth in self.bound.groups() {
+                pass.set_bind_group(GATHER_GROUP, depth, &[]);
+                pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
+            }
         });
     }
 
@@ -175,10 +221,16 @@ pub fn marks_words(options: &ClusterOptions) -> u32 {
     }
 }
 
+/// Whether the pass keeps marks of groups. One workgroup per tile keeps them to itself, and stores only boxes.
+fn has_marks(options: &ClusterOptions) -> bool {
+    options.occupancy != Occupancy::DepthAware || options.bounds == Bounds::Explicit
+}
+
 /// What the pass reads.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct Images<'a> {
-    pub(crate) depth: &'a wgpu::TextureView,
+    /// The depth buffer, and then those of layers.
+    pub(crate) depths: Vec<DepthImage>,
     /// Present if the strategy was made with normals or with a specular reach.
     pub(crate) normals: Option<&'a wgpu::TextureView>,
     /// Present if it was made with a specular threshold or with a specular reach.
@@ -186,7 +238,7 @@ pub(crate) struct Images<'a> {
 }
 
 /// The pass's shader.
-fn gather_shader<'a>(options: &ClusterOptions) -> Shader<'a> {
+fn gather_shader<'a>(options: &ClusterOptions, multisampled: bool) -> Shader<'a> {
     let occupancy = options.occupancy;
     let source = match occupancy {
         Occupancy::DepthAware => include_str!("shaders/gather_tiles.wesl"),
@@ -197,6 +249,7 @@ fn gather_shader<'a>(options: &ClusterOptions) -> Shader<'a> {
         .module("package::live", LiveGroups::WESL)
         .strategy(cluster_wesl(options))
         .flag("sparse", occupancy == Occupancy::Sparse)
+        .flag("multisampled", multisampled)
 }
 
 /// The module with the pass's entry points.
@@ -208,6 +261,6 @@ fn root(occupancy: Occupancy) -> &'static str {
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn gather_source(options: &ClusterOptions) -> Result<String, AssignError> {
-    gather_shader(options).link(root(options.occupancy))
+pub fn gather_source(options: &ClusterOptions, multisampled: bool) -> Result<String, AssignError> {
+    gather_shader(options, multisampled).link(root(options.occupancy))
 }

@@ -34,7 +34,7 @@
 //!
 //! Worked example: a view's samples lie in clusters 2, 5 and 6 of clusters 0 to 7. Dense strategies cull all
 //! eight clusters. Sparse ones append `[5, 2, 6]`, in any order, and cull three. The other clusters hold
-//! no samples, so shading never looks them up.
+//! no samples. Their lists are those of all lights, in case that shading looks them up all the same.
 //!
 //! # Cascades
 //!
@@ -119,8 +119,11 @@
 //!   pixels read different lists. If lights rise above most horizons, normals save nothing.
 //! - A surface whose depth equals the cleared depth cannot be told from background. Its samples get all lights.
 //!
-//! DC-I serves look-ups at any depth, including transparent layers and volumes. The others serve only the opaque
-//! surfaces in the depth buffer, and refuse any other look-up.
+//! DC-I serves look-ups at any depth, including transparent layers and volumes. The others serve the opaque surfaces in
+//! the depth buffer, with one or several samples per pixel, and what lies in front of them. A sample in a cluster without
+//! samples, or outside the box of its cluster, reads all lights. So hand over the depths of layers
+//! ([`Frame::layer_depths`](assign::Frame::layer_depths)), which become part of the bounds; DA-I and DA-E do not read
+//! them. All refuse look-ups at any depth, and with normals all but those at opaque surfaces.
 
 mod cluster_options;
 mod cluster_wesl;

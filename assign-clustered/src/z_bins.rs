@@ -151,8 +151,9 @@ impl Assignment for ZBins {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let froxels =
+        let mut froxels =
             FroxelsUniform::new(self.size, self.slices, frame.view, frame.light_bounds())?;
+        froxels.serve(frame, &self.id())?;
         self.culler.writes_mut().write(&self.froxels, 0, bytes_of(&froxels))?;
         let [tiles_x, tiles_y, slices] = froxels.counts;
         self.culler.prepare(

@@ -57,7 +57,11 @@ fn live_cells_have_one_layout() {
 #[test]
 fn parts_have_one_layout_in_wesl_and_rust() {
     let rust = struct_layout!(HybridParts: mask_words, tiles_per_part);
-    for shader in [HybridShader::Occupancy, HybridShader::Scatter, HybridShader::Raster] {
+    for shader in [
+        HybridShader::Occupancy { multisampled: false },
+        HybridShader::Scatter,
+        HybridShader::Raster,
+    ] {
         let module = validated(shader, LightKinds::default());
         let wesl = module.uniform_at(FIRST_STRATEGY_BINDING + 4);
         assert_eq!(wesl, rust, "{shader:?}: WESL, then Rust");

@@ -112,9 +112,13 @@ fn polished() -> ClusterOptions {
     ClusterOptions { reach: Some(8.0), ..options(Bounds::Explicit, Occupancy::Sparse) }
 }
 
-/// The pass `bounds`, validated.
+/// The pass `bounds`, validated with one and with several samples per pixel.
 fn gather(options: ClusterOptions) -> LinkedModule {
-    LinkedModule::new(&format!("{options:?}"), &gather_source(&options).unwrap())
+    let linked = |multisampled| {
+        LinkedModule::new(&format!("{options:?}"), &gather_source(&options, multisampled).unwrap())
+    };
+    linked(true);
+    linked(false)
 }
 
 /// Every shader that reads the froxels: kernels and passes of clusters, and those of HG.
@@ -137,7 +141,8 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
     shaders.push(("bounds, by tile".to_owned(), module));
     // `sort` reads only lists.
     let hybrid = [
-        HybridShader::Occupancy,
+        HybridShader::Occupancy { multisampled: false },
+        HybridShader::Occupancy { multisampled: true },
         HybridShader::Scatter,
         HybridShader::Raster,
         HybridShader::Reserve,

@@ -118,10 +118,10 @@ impl Grid {
             self.culler.writes_mut().write(&self.cells, 0, bytes_of(&cells))?;
             return Ok(cells.group_count());
         };
-        let depth = frame.surface_depth(&id)?;
+        let depths = frame.surface_and_layer_depths(&id)?;
         let lights = frame.light_bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
         let asked = AskedCells::new(self.counts, lights);
-        visible.prepare(gpu, frame, depth, asked, self.culler.writes_mut())?;
+        visible.prepare(gpu, frame, &depths, asked, self.culler.writes_mut())?;
         Ok(self.counts.0.iter().product())
     }
 }

@@ -1,9 +1,9 @@
 //! The table of cells of HC: which cells there are, and the pass `bounds` that finds those with visible samples.
 
 use assign::{
-    AssignError, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup, LightReader, LiveGroups,
-    Passes, Projection, Readback, Shader, Storage, StrategyWesl, View, entry, kernel,
-    storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, DepthBindGroups, DepthImage, DepthKernels, Frame, FrameBindings, FrameWrites, Gpu,
+    KeptBindGroup, LightReader, LiveGroups, Passes, Projection, Readback, Shader, Storage,
+    StrategyWesl, View, entry, kernel, storage_entry, uniform_entry,
 };
 use bytemuck::{Pod, Zeroable, bytes_of};
 
@@ -133,12 +133,11 @@ pub(crate) struct HashTable {
     slots: u32,
     most_slots: u32,
     frame: FrameBindings,
-    layout: wgpu::BindGroupLayout,
+    kernels: DepthKernels<Kernels>,
     live_layout: wgpu::BindGroupLayout,
-    bound: KeptBindGroup,
+    /// Of the depth buffer, and of each layer.
+    bound: DepthBindGroups,
     bound_live: KeptBindGroup,
-    clear: wgpu::ComputePipeline,
-    fill: wgpu::ComputePipeline,
     table: wgpu::Buffer,
     asked: wgpu::Buffer,
     table_use: wgpu::Buffer,
@@ -146,38 +145,56 @@ pub(crate) struct HashTable {
     live: LiveGroups,
 }
 
-impl HashTable {
-    pub(crate) fn new(gpu: &Gpu, cell_px: u32) -> Result<Self, AssignError> {
+/// The kernels for depth with one or with several samples per pixel.
+#[derive(Debug)]
+struct Kernels {
+    layout: wgpu::BindGroupLayout,
+    clear: wgpu::ComputePipeline,
+    fill: wgpu::ComputePipeline,
+}
+
+impl Kernels {
+    fn new(
+        gpu: &Gpu,
+        multisampled: bool,
+        [frame, live]: [&wgpu::BindGroupLayout; 2],
+    ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let layout = gpu.bind_group_layout(
             "cell table",
             &[
-                texture_entry(0, stages, wgpu::TextureSampleType::Depth),
+                DepthImage::layout(0, stages, multisampled),
                 storage_entry(1, stages, false),
                 uniform_entry(2, stages),
                 storage_entry(3, stages, false),
             ],
         );
-        let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
-        let frame = FrameBindings::new(gpu);
+        let shader = fill_shader(multisampled);
         // SAFETY: a loop counts up to a constant; or to the number of slots, at most 2^24, by a step of at least
-        // one workgroup; or over levels, at most 31.
+        // one workgroup; or over levels, at most 31; or over the samples of a pixel.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { fill_shader().create_uncounted(gpu, "package::fill") }?;
-        let layouts = [frame.layout(), &layout, &live_layout];
+        let module = unsafe { shader.create_uncounted(gpu, "package::fill") }?;
+        let layouts = [frame, &layout, live];
         let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let (clear, fill) = (pipeline("clear_table"), pipeline("fill_table"));
+        Ok(Self { layout, clear, fill })
+    }
+}
+
+impl HashTable {
+    pub(crate) fn new(gpu: &Gpu, cell_px: u32) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
+        let frame = FrameBindings::new(gpu);
         Ok(Self {
             cell_px,
             slots: 0,
             most_slots: SLOTS.1,
+            kernels: DepthKernels::new(Kernels::new(gpu, false, [frame.layout(), &live_layout])?),
             frame,
-            layout,
             live_layout,
-            bound: KeptBindGroup::default(),
+            bound: DepthBindGroups::default(),
             bound_live: KeptBindGroup::default(),
-            clear,
-            fill,
             table: gpu.storage("cell table", 0)?,
             asked: gpu.uniform("hash cells", size_of::<HashCellsUniform>() as u64),
             table_use: gpu.storage("table use", size_of::<TableUse>() as u64)?,
@@ -198,7 +215,7 @@ impl HashTable {
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        depth: &wgpu::TextureView,
+        depths: &[DepthImage],
         writes: &mut FrameWrites,
     ) -> Result<u32, AssignError> {
         self.readback.poll();
@@ -217,13 +234,12 @@ impl HashTable {
             self.table = gpu.storage("cell table", bytes)?;
         }
         self.live.prepare(gpu, self.slots)?;
-        let entries = [
-            texture(0, depth),
-            entry(1, &self.table),
-            entry(2, &self.asked),
-            entry(3, &self.table_use),
-        ];
-        self.bound.bind(gpu, "cell table", &self.layout, &entries);
+        if let Some(depth) = depths.first() {
+            let layouts = [self.frame.layout(), &self.live_layout];
+            self.kernels.choose(depth, || Kernels::new(gpu, true, layouts))?;
+        }
+        let buffers = [entry(1, &self.table), entry(2, &self.asked), entry(3, &self.table_use)];
+        self.bound.bind(gpu, "cell table", &self.kernels.chosen().layout, depths, &buffers);
         let live = [entry(0, self.live.buffer())];
         self.bound_live.bind(gpu, "live groups", &self.live_layout, &live);
         Ok(self.slots)
@@ -231,15 +247,19 @@ impl HashTable {
 
     /// Records the pass `bounds`: inside the clock.
     pub(crate) fn record(&mut self, view: &View, passes: &mut dyn Passes) {
+        let kernels = self.kernels.chosen();
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(FILL_GROUP, self.bound.get(), &[]);
+            pass.set_bind_group(FILL_GROUP, self.bound.groups().next(), &[]);
             pass.set_bind_group(LIVE_GROUP, self.bound_live.get(), &[]);
-            pass.set_pipeline(&self.clear);
+            pass.set_pipeline(&kernels.clear);
             pass.dispatch_workgroups(kernel::workgroups(self.slots.into(), CLEARED), 1, 1);
-            pass.set_pipeline(&self.fill);
+            pass.set_pipeline(&kernels.fill);
             let [across, down] = surface::blocks(view);
-            pass.dispatch_workgroups(across, down, 1);
+            for depth in self.bound.groups() {
+                pass.set_bind_group(FILL_GROUP, depth, &[]);
+                pass.dispatch_workgroups(across, down, 1);
+            }
         });
         self.readback.record(passes.encoder(), &self.table_use, 0);
     }
@@ -281,17 +301,18 @@ impl HashTable {
 }
 
 /// The pass's shader.
-fn fill_shader() -> Shader<'static> {
+fn fill_shader(multisampled: bool) -> Shader<'static> {
     Shader::new(FILL_GROUP)
         .module("package::fill", include_str!("shaders/fill.wesl"))
         .module("package::live", LiveGroups::WESL)
         .module(SURFACE.0, SURFACE.1)
         .strategy(HASHED_WESL)
+        .flag("multisampled", multisampled)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn fill_source() -> Result<String, AssignError> {
-    fill_shader().link("package::fill")
+pub fn fill_source(multisampled: bool) -> Result<String, AssignError> {
+    fill_shader(multisampled).link("package::fill")
 }
 
 #[cfg(test)]

@@ -114,8 +114,8 @@ impl Assignment for HashedCells {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let depth = frame.surface_depth(&self.id())?;
-        let count = self.table.prepare(gpu, frame, depth, self.culler.writes_mut())?;
+        let depths = frame.surface_and_layer_depths(&self.id())?;
+        let count = self.table.prepare(gpu, frame, &depths, self.culler.writes_mut())?;
         self.culler.prepare(
             gpu,
             frame,

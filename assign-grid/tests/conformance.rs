@@ -5,7 +5,7 @@ use assign::{
     View,
     conformance::{self, faulty::Fault},
 };
-use assign_grid::{Grid, GridBox};
+use assign_grid::{Grid, GridBox, HashedCells};
 use glam::Vec3;
 
 fn grid(
@@ -44,6 +44,16 @@ fn all_conform_through_the_hierarchy() {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
     conforms("8x8x8", GridBox::Positions, settings);
     conforms("8x8x8", GridBox::Surfaces, settings);
+}
+
+#[test]
+fn look_ups_that_no_frame_stated_lose_no_light() {
+    let visible = grid("8x8x8", GridBox::Visible, CullSettings::default());
+    conformance::run_unstated(&visible).expect("conforms");
+    let hashed = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(HashedCells::new(gpu, 16, CullSettings::default())?))
+    };
+    conformance::run_unstated(&hashed).expect("conforms");
 }
 
 /// A grid that reuses its lists for some frames.

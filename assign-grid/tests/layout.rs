@@ -35,23 +35,25 @@ fn cells_uniform() {
     let kernel = kernel(LightSource::Linear, LightKinds::default());
     assert_eq!(kernel.uniform_at(FIRST_STRATEGY_BINDING), rust, "WESL, then Rust");
     // The GPU makes them too, in a storage buffer.
-    let bounds = LinkedModule::new("bounds", &visible_source().unwrap());
+    let bounds = LinkedModule::new("bounds", &visible_source(false).unwrap());
     assert_eq!(bounds.layout_of("Cells"), rust, "WESL, then Rust");
 }
 
 #[test]
 fn asked_cells() {
     let rust = struct_layout!(AskedCells: lights_min, lights_max, counts);
-    let bounds = LinkedModule::new("bounds", &visible_source().unwrap());
+    let bounds = LinkedModule::new("bounds", &visible_source(false).unwrap());
     assert_eq!(bounds.uniform_at(2), rust, "WESL, then Rust");
+    LinkedModule::new("bounds of several samples", &visible_source(true).unwrap());
 }
 
 #[test]
 fn hash_cells_and_their_table() {
     let rust = struct_layout!(HashCellsUniform: eye_world, edge_m, edge_per_m, base_exponent,
         slot_count);
-    let fill = LinkedModule::new("fill", &fill_source().unwrap());
+    let fill = LinkedModule::new("fill", &fill_source(false).unwrap());
     assert_eq!(fill.uniform_at(2), rust, "WESL, then Rust");
+    LinkedModule::new("fill of several samples", &fill_source(true).unwrap());
     let table_use = struct_layout!(TableUse: slots, filled, lost);
     assert_eq!(fill.layout_of("TableUse"), table_use, "WESL, then Rust");
     for source in [LightSource::Linear, LightSource::Hierarchy] {

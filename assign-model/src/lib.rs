@@ -37,7 +37,7 @@
 //! - Models out of view are culled as well.
 //! - Parts divide the box, not the surface, so most parts of a large hollow model are empty.
 //!
-//! - A sample in the open lies on no model, so the strategy refuses look-ups at any depth.
+//! - A sample in the open lies on no model and reads all lights, so the strategy refuses look-ups at any depth.
 //! - A sample that the rounding of depth puts outside its model's box reads the list of all lights,
 //!   which is slow but correct.
 

@@ -137,8 +137,10 @@ impl Assignment for PerModel {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let reason = "a sample in the open lies on no model";
-        frame.check_domain(&self.id(), SampleDomain::OpaqueSurfaces, reason)?;
+        let served =
+            [SampleDomain::OpaqueSurfaces, SampleDomain::NearSurfaces, SampleDomain::InFront];
+        let reason = "samples in the open lie on no model, and would read all lights";
+        frame.check_domain(&self.id(), &served, reason)?;
         let missing = || AssignError::Missing { strategy: self.id(), missing: "models" };
         self.upload(gpu, frame.models.ok_or_else(missing)?)?;
         self.culler.prepare(

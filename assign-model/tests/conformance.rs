@@ -70,6 +70,12 @@ fn any_depth_missing_models_and_bad_limits_are_refused() {
     }
 }
 
+#[test]
+fn look_ups_that_no_frame_stated_lose_no_light() {
+    let make = per_model(Some(2.0), CullSettings::default());
+    conformance::run_unstated(&make).expect("conforms");
+}
+
 /// A strategy that lists every light for every sample would conform, so this test checks that lists
 /// are short.
 #[test]

@@ -1,8 +1,8 @@
 //! The pass `bounds`: finds the depth range of each group's samples.
 
 use assign::{
-    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, FrameWrites, Gpu, KeptBindGroup,
-    Passes, Shader, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, DepthImage, DepthKernels, FIRST_STRATEGY_BINDING, Frame, FrameBindings,
+    FrameWrites, Gpu, KeptBindGroup, Passes, Shader, entry, kernel, storage_entry, uniform_entry,
 };
 
 use crate::{TileDepths, tile_wesl::tile_wesl};
@@ -13,10 +13,10 @@ const BOUNDS_GROUP: u32 = 1;
 /// Reads the depth buffer once, or twice for halves that shrink and for slices.
 #[derive(Debug)]
 pub(crate) struct TileBounds {
+    tile_depths: TileDepths,
     frame: FrameBindings,
-    layout: wgpu::BindGroupLayout,
+    reduce: DepthKernels<Reduce>,
     bound: KeptBindGroup,
-    pipeline: wgpu::ComputePipeline,
     depths: wgpu::Buffer,
     /// The depth slices of each tile that hold samples: `array<u32>`.
     masks: Option<wgpu::Buffer>,
@@ -25,33 +25,55 @@ pub(crate) struct TileBounds {
     lists: u32,
 }
 
-impl TileBounds {
-    pub(crate) fn new(gpu: &Gpu, tile_depths: TileDepths) -> Result<Self, AssignError> {
+/// The kernel for depth with one or with several samples per pixel.
+#[derive(Debug)]
+struct Reduce {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Reduce {
+    fn new(
+        gpu: &Gpu,
+        tile_depths: TileDepths,
+        multisampled: bool,
+        frame: &wgpu::BindGroupLayout,
+    ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let depth = texture_entry(0, stages, wgpu::TextureSampleType::Depth);
         let mut entries = vec![
-            depth,
+            DepthImage::layout(0, stages, multisampled),
             storage_entry(1, stages, false),
             uniform_entry(FIRST_STRATEGY_BINDING, stages),
         ];
-        let masks = match tile_depths {
-            TileDepths::Sliced => Some(gpu.storage("tile depth masks", 0)?),
-            _ => None,
-        };
-        if masks.is_some() {
+        if tile_depths == TileDepths::Sliced {
             entries.push(storage_entry(2, stages, false));
         }
         let layout = gpu.bind_group_layout("tile bounds", &entries);
-        let frame = FrameBindings::new(gpu);
-        // SAFETY: its loops count up to the number of pixels of a tile.
+        let shader = bounds_shader(tile_depths, multisampled);
+        // SAFETY: its loops count up to the number of pixels of a tile, or of samples of a pixel.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module =
-            unsafe { bounds_shader(tile_depths).create_uncounted(gpu, "package::tile_bounds") }?;
-        let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame.layout(), &layout]);
-        let depths = gpu.storage("tile depths", 0)?;
-        let lists = tile_depths.lists();
-        let bound = KeptBindGroup::default();
-        Ok(Self { frame, layout, bound, pipeline, depths, counts: [0, 0], lists, masks })
+        let module = unsafe { shader.create_uncounted(gpu, "package::tile_bounds") }?;
+        let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame, &layout]);
+        Ok(Self { layout, pipeline })
+    }
+}
+
+impl TileBounds {
+    pub(crate) fn new(gpu: &Gpu, tile_depths: TileDepths) -> Result<Self, AssignError> {
+        let frame = FrameBindings::new(gpu);
+        Ok(Self {
+            tile_depths,
+            reduce: DepthKernels::new(Reduce::new(gpu, tile_depths, false, frame.layout())?),
+            frame,
+            bound: KeptBindGroup::default(),
+            depths: gpu.storage("tile depths", 0)?,
+            masks: match tile_depths {
+                TileDepths::Sliced => Some(gpu.storage("tile depth masks", 0)?),
+                _ => None,
+            },
+            counts: [0, 0],
+            lists: tile_depths.lists(),
+        })
     }
 
     /// Sizes the buffer for `counts` tiles along x and y, and binds it: outside the clock.
@@ -59,11 +81,13 @@ impl TileBounds {
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        depth: &wgpu::TextureView,
+        depth: &DepthImage,
         (tiles, counts): (&wgpu::Buffer, [u32; 2]),
         writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
         self.frame.update_in(gpu, frame, writes)?;
+        let layout = self.frame.layout();
+        self.reduce.choose(depth, || Reduce::new(gpu, self.tile_depths, true, layout))?;
         self.counts = counts;
         let bytes = u64::from(counts[0]) * u64::from(counts[1]) * u64::from(self.lists) * 8;
         if self.depths.size() < bytes {
@@ -75,9 +99,9 @@ impl TileBounds {
             *masks = gpu.storage("tile depth masks", bytes / 2)?;
         }
         let mut entries =
-            vec![texture(0, depth), entry(1, &self.depths), entry(FIRST_STRATEGY_BINDING, tiles)];
+            vec![depth.entry(0), entry(1, &self.depths), entry(FIRST_STRATEGY_BINDING, tiles)];
         entries.extend(self.masks.as_ref().map(|masks| entry(2, masks)));
-        self.bound.bind(gpu, "tile bounds", &self.layout, &entries);
+        self.bound.bind(gpu, "tile bounds", &self.reduce.chosen().layout, &entries);
         Ok(())
     }
 
@@ -86,7 +110,7 @@ impl TileBounds {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(BOUNDS_GROUP, self.bound.get(), &[]);
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(&self.reduce.chosen().pipeline);
             pass.dispatch_workgroups(self.counts[0], self.counts[1], 1);
         });
     }
@@ -107,14 +131,15 @@ impl TileBounds {
     }
 }
 
-fn bounds_shader<'a>(depths: TileDepths) -> Shader<'a> {
+fn bounds_shader<'a>(depths: TileDepths, multisampled: bool) -> Shader<'a> {
     Shader::new(BOUNDS_GROUP)
         .module("package::tile_bounds", include_str!("shaders/tile_bounds.wesl"))
         .strategy(tile_wesl(depths))
         .flag("tight_halves", depths == TileDepths::ModifiedHalfZ)
+        .flag("multisampled", multisampled)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn bounds_source(depths: TileDepths) -> Result<String, AssignError> {
-    bounds_shader(depths).link("package::tile_bounds")
+pub fn bounds_source(depths: TileDepths, multisampled: bool) -> Result<String, AssignError> {
+    bounds_shader(depths, multisampled).link("package::tile_bounds")
 }

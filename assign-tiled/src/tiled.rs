@@ -1,9 +1,9 @@
 //! Tiles: T-I, T-E, HalfZ, ModifiedHalfZ and T-25D.
 
 use assign::{
-    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits, Lookup, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, DepthImage,
+    FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, LightTraits,
+    Lookup, Needs, Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -86,6 +86,18 @@ impl Tiled {
     fn is_explicit(&self) -> bool {
         self.depths != TileDepths::Implicit
     }
+
+    /// The depth buffer that bounds tiles.
+    fn depth_of(&self, frame: &Frame<'_>) -> Result<DepthImage, AssignError> {
+        let id = self.id();
+        let depth = frame.surface_depth(&id)?;
+        if self.depths != TileDepths::ExplicitAtOnce {
+            return Ok(depth);
+        }
+        let reason = "no buffer keeps the bounds of its tiles, so look-ups cannot tell which samples they hold";
+        frame.check_domain(&id, &[SampleDomain::OpaqueSurfaces, SampleDomain::InFront], reason)?;
+        depth.with_one_sample("its culling kernel reads one sample per pixel")
+    }
 }
 
 /// The strategy's resources that culling and the look-up read.
@@ -129,16 +141,17 @@ impl Assignment for Tiled {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut tiles = TilesUniform::new(self.size, frame.view);
+        tiles.serve(frame, &self.id())?;
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
         if self.is_explicit() {
-            let depth = frame.covering_depth(&self.id())?;
+            let depth = self.depth_of(frame)?;
             tiles.surfaces_only = match frame.samples {
                 SampleDomain::InFront => SURFACES_AND_FRONT,
                 _ => SURFACES_ONLY,
             };
             if let Some(tile_bounds) = &mut self.tile_bounds {
                 let writes = self.culler.writes_mut();
-                tile_bounds.prepare(gpu, frame, depth, (&self.tiles, tiles.counts), writes)?;
+                tile_bounds.prepare(gpu, frame, &depth, (&self.tiles, tiles.counts), writes)?;
                 resources.extend(tile_bounds.resources());
             }
         }

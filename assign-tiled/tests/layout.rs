@@ -67,6 +67,9 @@ fn the_pass_bounds_validates_and_reads_the_same_layout() {
             // They have no such pass.
             continue;
         }
-        check_tiles(&LinkedModule::new("tile bounds", &bounds_source(depths).unwrap()));
+        for multisampled in [false, true] {
+            let source = bounds_source(depths, multisampled).unwrap();
+            check_tiles(&LinkedModule::new("tile bounds", &source));
+        }
     }
 }

@@ -143,11 +143,26 @@ impl<'a> Lookup<'a> {
     /// [`AssignError::Parameter`] for a prefix that begins no name, and [`AssignError::Shader`] if two variables would have
     /// the same binding.
     pub fn wgsl(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
+        self.shader(slots).wgsl(slots)
+    }
+
+    /// As [`wgsl`](Self::wgsl), for look-ups at other samples than those in the depth buffer
+    /// ([`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere)). A module that holds both texts needs two
+    /// prefixes; the bindings may be the same.
+    ///
+    /// # Errors
+    ///
+    /// As [`wgsl`](Self::wgsl).
+    pub fn wgsl_anywhere(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
+        self.shader(slots).looks_up_anywhere().wgsl(slots)
+    }
+
+    /// The look-up for any shader stage and all kinds of lights.
+    fn shader(&self, slots: &Slots<'_>) -> Shader<'static> {
         Shader::new(slots.lists_group)
             .strategy(self.module)
             .light_kinds(LightKinds { spots: true, areas: true })
             .without_subgroups()
-            .wgsl(slots)
     }
 
     /// The layout of [`Assignment::bind_group`].

@@ -5,11 +5,11 @@
 //! lists.
 
 use crate::{
-    AssignError, CullSettings, Facing, Frame, FrameBindings, FrameWrites, Gpu, GroupShape, Groups,
-    KeptBindGroup, LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes,
-    StrategyModule,
+    AssignError, CullSettings, DepthImage, Facing, Frame, FrameBindings, FrameWrites, Gpu,
+    GroupShape, Groups, KeptBindGroup, LightKinds, LightLists, LightSource, LightTraits,
+    ListsBindings, Lookup, Passes, StrategyModule,
     cull_kernel::{KernelKey, Kernels, LISTS_GROUP, Variant},
-    entries::{entry, storage_entry, texture, texture_entry},
+    entries::{entry, storage_entry},
     limits::{check_limits, storage_buffer_limits},
     touched_groups::{Dispatch, TouchedGroups},
 };
@@ -196,6 +196,7 @@ impl Culler {
         frame: &Frame<'_>,
         groups: Groups<'_>,
     ) -> Result<(), AssignError> {
+        let mut depth = None;
         let mut entries = Vec::new();
         if let Groups::Live { live, .. } = groups {
             entries.push(entry(0, live.buffer()));
@@ -204,9 +205,7 @@ impl Culler {
             entries.push(entry(1, frame.lights.nodes()));
         }
         if self.module.wesl().finds_bounds_by_lanes() {
-            let strategy = self.label.clone();
-            let missing = || AssignError::Missing { strategy, missing: "depth" };
-            entries.push(texture(2, frame.depth.ok_or_else(missing)?));
+            entries.push(depth.insert(frame.depth_image(&self.label)?).entry(2));
         }
         let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
         let bound = if self.is_update { &mut self.touched_source } else { &mut self.source };
@@ -227,7 +226,7 @@ impl Culler {
             entries.push(storage_entry(1, stages, true));
         }
         if self.module.wesl().finds_bounds_by_lanes() {
-            entries.push(texture_entry(2, stages, wgpu::TextureSampleType::Depth));
+            entries.push(DepthImage::layout(2, stages, false));
         }
         gpu.bind_group_layout("cull source", &entries)
     }

@@ -79,6 +79,22 @@ pub enum AssignError {
         /// What the device has.
         has: u64,
     },
+    /// An image of the frame is not what the strategy can read.
+    #[error(
+        "{strategy} reads {image} from a texture whose {field} is {value}: it must be {accepted}"
+    )]
+    Image {
+        /// The strategy's id.
+        strategy: String,
+        /// What the image holds: `depth`, `normals`, `base colours`.
+        image: &'static str,
+        /// What is wrong with the texture.
+        field: &'static str,
+        /// The offending value.
+        value: String,
+        /// The accepted values.
+        accepted: String,
+    },
     /// A buffer is larger than the device can bind.
     #[error("{what} needs {bytes} bytes: this device can bind at most {limit}")]
     TooLarge {

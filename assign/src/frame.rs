@@ -12,11 +12,21 @@ use crate::{
 };
 
 /// Where shading looks up lists.
+///
+/// Groups are found for the samples of the depth buffer. A shader that looks lists up at others, in any domain but
+/// [`OpaqueSurfaces`](Self::OpaqueSurfaces), is linked with
+/// [`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere). A look-up that no list serves then reads all
+/// lights: slow, but no light is lost. A strategy for which most look-ups would be such refuses the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SampleDomain {
-    /// Only at the opaque surfaces in the depth buffer.
+    /// Only at the opaque surfaces in the depth buffer, with its depth at the pixel's centre. With several samples per
+    /// pixel, a look-up has the depth of one of them.
     #[default]
     OpaqueSurfaces,
+    /// At these surfaces as fragments of a target with several samples per pixel see them. A fragment is shaded once,
+    /// at the pixel's centre, also where its triangle covers only other samples. Its depth there is extrapolated,
+    /// and may lie in front of or behind all depths of the buffer.
+    NearSurfaces,
     /// At these surfaces, and at any depth between the near plane and the surface in the same pixel, as for
     /// transparent surfaces and particles. In a pixel without a surface, at any depth.
     InFront,
@@ -29,6 +39,7 @@ impl SampleDomain {
     fn words(self) -> &'static str {
         match self {
             Self::OpaqueSurfaces => "look-ups at opaque surfaces",
+            Self::NearSurfaces => "look-ups at surfaces with several samples per pixel",
             Self::InFront => "look-ups in front of opaque surfaces",
             Self::AnyDepth => "look-ups at any depth",
         }
@@ -67,8 +78,12 @@ pub struct Frame<'a> {
     pub lights: &'a LightBuffer,
     /// Where shading looks up lists.
     pub samples: SampleDomain,
-    /// Depth of the opaque surfaces: a `texture_depth_2d` as large as the target.
+    /// Depth of the opaque surfaces: a texture as large as the target, with one or several samples per pixel
+    /// (`texture_depth_2d`, `texture_depth_multisampled_2d`). A view of depth and stencil serves too.
     pub depth: Option<&'a wgpu::TextureView>,
+    /// Depth of layers in front of the opaque surfaces, such as transparent ones: textures like `depth`, cleared to the
+    /// far end where a layer shows nothing. Lists then serve their samples too. Look-ups beyond them read all lights.
+    pub layer_depths: &'a [&'a wgpu::TextureView],
     /// Unit shading normals in world space, with perceptual roughness in `w`: a `texture_2d<f32>`
     /// of half floats or better, as large as the target.
     pub normals: Option<&'a wgpu::TextureView>,
@@ -96,6 +111,7 @@ impl<'a> Frame<'a> {
             lights,
             samples: SampleDomain::default(),
             depth: None,
+            layer_depths: &[],
             normals: None,
             base_color: None,
             models: None,
@@ -130,6 +146,13 @@ impl<'a> Frame<'a> {
         self
     }
 
+    /// Adds the depths of layers in front of the opaque surfaces.
+    #[must_use]
+    pub fn with_layer_depths(mut self, layers: &'a [&'a wgpu::TextureView]) -> Self {
+        self.layer_depths = layers;
+        self
+    }
+
     /// Adds the shading normals.
     #[must_use]
     pub fn with_normals(mut self, normals: &'a wgpu::TextureView) -> Self {
@@ -158,35 +181,8 @@ impl<'a> Frame<'a> {
         self
     }
 
-    /// The depth buffer, for a strategy that serves only the surfaces in it. `strategy` is its id.
-    ///
-    /// # Errors
-    ///
-    /// [`AssignError::Unsupported`] if shading looks lists up at other depths, and [`AssignError::Missing`] without a
-    /// depth buffer.
-    pub fn surface_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        let reason = "its lists serve only the opaque surfaces in the depth buffer";
-        self.check_domain(strategy, SampleDomain::OpaqueSurfaces, reason)?;
-        self.some_depth(strategy)
-    }
-
-    /// The depth buffer, for a strategy that serves the surfaces in it and, if they are asked for, samples in front of
-    /// them ([`SampleDomain::InFront`]). `strategy` is its id.
-    ///
-    /// # Errors
-    ///
-    /// [`AssignError::Unsupported`] if shading looks lists up at any depth, and [`AssignError::Missing`] without a depth
-    /// buffer.
-    pub fn covering_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        if self.samples != SampleDomain::InFront {
-            let reason = "its lists serve only the opaque surfaces in the depth buffer and what lies in front of them";
-            self.check_domain(strategy, SampleDomain::OpaqueSurfaces, reason)?;
-        }
-        self.some_depth(strategy)
-    }
-
-    /// Refuses look-ups at any depths but those of a domain. `strategy` is the id of what serves the domain, and
-    /// `reason` says why it serves no other.
+    /// Refuses look-ups at any depths but those of some domains. `strategy` is the id of what serves these, and
+    /// `reason` says why it serves no others.
     ///
     /// # Errors
     ///
@@ -194,10 +190,10 @@ impl<'a> Frame<'a> {
     pub fn check_domain(
         &self,
         strategy: &str,
-        served: SampleDomain,
+        served: &[SampleDomain],
         reason: &str,
     ) -> Result<(), AssignError> {
-        if self.samples == served {
+        if served.contains(&self.samples) {
             return Ok(());
         }
         Err(AssignError::Unsupported {
@@ -205,11 +201,6 @@ impl<'a> Frame<'a> {
             asked: self.samples.words().into(),
             reason: reason.into(),
         })
-    }
-
-    fn some_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        self.depth
-            .ok_or_else(|| AssignError::Missing { strategy: strategy.into(), missing: "depth" })
     }
 
     /// The lights, if the CPU knows them all and their order is that of the slots. `strategy` is the id of what asks, and

@@ -8,7 +8,8 @@ const MOST: usize = 4;
 /// A bind group that is made again only if the layout or a bound resource changes.
 ///
 /// A resource is the same if it is the same wgpu object. A renderer that makes a new view of its depth buffer in each
-/// frame therefore gets a new bind group in each frame: keep the view.
+/// frame therefore gets a new bind group in each frame: keep the view. Views of a whole texture of depth and stencil are
+/// the same, because a layout admits only one of the two aspects.
 #[derive(Debug, Default)]
 pub struct KeptBindGroup {
     /// The newest use comes first.
@@ -67,11 +68,21 @@ impl Bound {
             (Self::Buffer { buffer, offset, size }, wgpu::BindingResource::Buffer(bound)) => {
                 buffer == bound.buffer && *offset == bound.offset && *size == bound.size
             }
-            (Self::View(view), wgpu::BindingResource::TextureView(bound)) => view == *bound,
+            (Self::View(view), wgpu::BindingResource::TextureView(bound)) => {
+                view == *bound
+                    || (view.texture() == bound.texture() && is_whole_depth_stencil(view.texture()))
+            }
             (Self::Sampler(sampler), wgpu::BindingResource::Sampler(bound)) => sampler == *bound,
             _ => false,
         }
     }
+}
+
+/// Whether all views of a texture that one layout admits show the same.
+pub(crate) fn is_whole_depth_stencil(texture: &wgpu::Texture) -> bool {
+    texture.mip_level_count() == 1
+        && texture.depth_or_array_layers() == 1
+        && texture.format().is_combined_depth_stencil_format()
 }
 
 impl Made {

@@ -92,6 +92,14 @@ impl ListsSnapshot {
         self.lists.get(group.wrapping_add(1) as usize).copied()
     }
 
+    /// Whether a group has the list of all lights: its list did not fit, or it holds no sample.
+    pub fn is_all_lights(&self, group: u32) -> bool {
+        let all = self.list(ALL_LIGHTS).filter(|all| all.count > 0);
+        all.is_some_and(|all| {
+            self.list(group).is_some_and(|list| list.count > 0 && list.first == all.first)
+        })
+    }
+
     /// The entries of a group; `None` if the group or its entries lie outside the buffers.
     pub fn entries_of(&self, group: u32) -> Option<&[u32]> {
         let list = self.list(group)?;

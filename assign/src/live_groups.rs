@@ -7,8 +7,8 @@ use crate::{AssignError, Gpu};
 /// `live.wesl`.
 ///
 /// A strategy clears it at the start of a frame (`clear_live`) and appends each group once
-/// (`append_live`). [`Culler`](crate::Culler) then culls only those groups. Shading must never look
-/// up other groups: their records are from an earlier frame.
+/// (`append_live`). [`Culler`](crate::Culler) then culls only those groups. The records of the others are the strategy's:
+/// unless its look-up never returns such a group, it copies record 0 to them, so that they read all lights.
 #[derive(Debug)]
 pub struct LiveGroups {
     buffer: wgpu::Buffer,

@@ -60,7 +60,11 @@ impl MaskLayout {
     /// fewer bits than lights, points outside the entries.
     pub(crate) fn decode(self, records: &[LightList], words: &[u32]) -> (Vec<LightList>, Vec<u32>) {
         let mut entries = Vec::new();
-        let decoded = records.iter().map(|record| {
+        let decoded = records.iter().enumerate().map(|(ix, record)| {
+            if ix > 0 && record.count > 0 && record.first == records[0].first {
+                // It shares the mask of all lights, whose lights come first. Its count may be that of all slots.
+                return LightList { first: 0, count: records[0].count };
+            }
             let begin = u32::try_from(entries.len()).unwrap_or(u32::MAX);
             match self.lights(*record, words) {
                 None if record.first == u32::MAX => *record,

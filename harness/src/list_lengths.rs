@@ -11,8 +11,8 @@ pub struct ListLengths {
     /// The number of groups that samples read, per bin of list length: see [`bin_of`]. If each sample reads a list of
     /// its own, each is counted.
     pub histogram: Vec<u64>,
-    /// The number of all groups per bin, read or not. A group that the pass skips, such as a cluster without
-    /// samples, counts as empty.
+    /// The number of all groups per bin, read or not. A group without samples counts as empty, although a look-up
+    /// there would read all lights.
     pub all_groups: Vec<u64>,
 }
 
@@ -41,8 +41,18 @@ impl ListLengths {
         }
         let read = lists.lists.iter().zip(is_read).filter(|(_, is_read)| *is_read);
         count_in(&mut self.histogram, read.map(|(list, _)| list.count));
-        // The first record lists all lights.
-        count_in(&mut self.all_groups, lists.lists.iter().skip(1).map(|list| list.count));
+        // The first record lists all lights. So do groups that hold no sample, besides those that overflowed.
+        let groups = 0..lists.lists.len().saturating_sub(1) as u32;
+        let mut overflowed = lists.counters.overflowed_groups;
+        let all = groups.map(|group| {
+            if lists.is_all_lights(group) {
+                let is_read = overflowed > 0;
+                overflowed = overflowed.saturating_sub(1);
+                return if is_read { length(group) } else { 0 };
+            }
+            length(group)
+        });
+        count_in(&mut self.all_groups, all);
     }
 }
 
@@ -77,11 +87,12 @@ mod tests {
 
     #[test]
     fn each_group_counts_once_and_every_pixel_counts() {
-        let list = |count| LightList { first: 0, count };
+        let list = |first, count| LightList { first, count };
         let lists = ListsSnapshot {
-            lists: vec![list(9), list(0), list(3), list(77)],
+            // The last two groups have all lights: one overflowed, and one holds no sample.
+            lists: vec![list(0, 9), list(9, 0), list(9, 3), list(12, 77), list(0, 9), list(0, 9)],
             entries: Vec::new(),
-            counters: Counters::default(),
+            counters: Counters { overflowed_groups: 1, ..Counters::default() },
         };
         let samples = Samples {
             positions: vec![[0.0; 3]; 4],
@@ -95,6 +106,6 @@ mod tests {
         // No sample reads group 2, and the record of all lights is no group.
         assert_eq!(lengths.histogram, [1, 0, 1]);
         // Group 2 counts among all groups; the record of all lights does not.
-        assert_eq!(lengths.all_groups, [1, 0, 1, 0, 0, 0, 0, 1]);
+        assert_eq!(lengths.all_groups, [2, 0, 1, 0, 1, 0, 0, 1]);
     }
 }

@@ -182,6 +182,7 @@ pub fn record(
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
             layers: layer_setting(&args.layers),
+            msaa: (args.msaa > 1).then_some(args.msaa),
             motion: stage.moving.as_ref().map(Moving::setting),
         },
         times: Times {

@@ -33,9 +33,6 @@ fn row(scenario: &Scenario) -> String {
     if !scenario.options.is_empty() {
         note(format!("adds {}", scenario.options.join(" ")));
     }
-    if let Some(why_not) = scenario.why_not {
-        note(format!("not shown yet: {why_not}"));
-    }
     text
 }
 

@@ -214,6 +214,14 @@ impl Stage {
         Ok(self.renderer.show_layers(&options)?)
     }
 
+    /// Sets the samples per pixel, 1 or 4.
+    pub fn sample_pixels(&mut self, samples: u32) -> Result<(), HarnessError> {
+        if self.renderer.samples() != samples {
+            self.renderer.sample_pixels(&self.optics.target(&self.view), samples)?;
+        }
+        Ok(())
+    }
+
     /// Uploads the camera, untimed, and binds the lights.
     pub fn prepare(&mut self) -> Result<(), HarnessError> {
         Ok(self.renderer.prepare(&self.view, &self.lights)?)

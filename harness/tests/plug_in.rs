@@ -62,15 +62,19 @@ fn every_look_up_validates_inside_a_renderer() {
             let text = lookup.wgsl(&slots).expect(id);
             let module = LinkedModule::new(id, &text);
             let variables = module.module().global_variables.iter();
-            let bound: Vec<(u32, u32)> =
-                variables.filter_map(|(_, v)| Some((v.binding?.group, v.binding?.binding))).collect();
+            let bound: Vec<(u32, u32)> = variables
+                .filter_map(|(_, v)| Some((v.binding?.group, v.binding?.binding)))
+                .collect();
             let is_placed = |(group, binding): (u32, u32)| {
                 (group == view.0 && (view.1..view.1 + 4).contains(&binding))
                     || (group == 0 && (5..apart).contains(&binding))
             };
             assert!(bound.iter().copied().all(is_placed), "{id}: {bound:?}");
             if prefix == "lb_" {
-                LinkedModule::new(id, &(text + RENDERER));
+                // Look-ups of opaque surfaces and of other samples in one module.
+                let anywhere = Slots { prefix: "glass_", ..slots };
+                let anywhere = lookup.wgsl_anywhere(&anywhere).expect(id);
+                LinkedModule::new(id, &(text + RENDERER + &anywhere));
             }
             for kinds in LightKinds::ALL {
                 let reader = lookup.module.wesl().reader;

@@ -226,7 +226,7 @@ mod tests {
         let viewport = Viewport { x: 2, y: 1, width: 13, height: 11 };
         let view = View { viewport, ..View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [1, 1]) };
         let scene = SceneGpu::new(&gpu, &atrium(1)).expect("fits");
-        let mut targets = Targets::new(&gpu, &view, &scene).expect("fit");
+        let mut targets = Targets::new(&gpu, &view, &scene, 1).expect("fit");
         let [width, height] = targets.size;
         // One that the CPU can write.
         targets.radiance_texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -78,6 +78,9 @@ impl Lighting {
             }
         }
         check_reach(options, strategy)?;
+        if !mode.is_forward() {
+            renderer.check_one_sample("deferred shading")?;
+        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;

@@ -30,6 +30,7 @@ pub(crate) struct PixelPass<'a> {
 impl PixelPass<'_> {
     /// Runs the pass over a viewport of the renderer's targets, and submits it.
     pub(crate) fn submit(self, renderer: &Renderer, viewport: Viewport) -> Result<(), AssignError> {
+        renderer.check_one_sample(self.name)?;
         let gpu = &renderer.gpu;
         let mut entries = self.images.layout(wgpu::ShaderStages::COMPUTE);
         entries.extend(self.layout);

@@ -64,7 +64,7 @@ pub fn probe(
 pub(crate) fn ask_captured<'a>(pass: &mut PixelPass<'a>, captured: Option<&'a wgpu::Buffer>) {
     let Some(captured) = captured else { return };
     let stages = wgpu::ShaderStages::COMPUTE;
-    pass.shader = pass.shader.clone().flag("captured", true);
+    pass.shader = pass.shader.clone().flag("captured", true).looks_up_anywhere();
     pass.layout.push(storage_entry(CAPTURED_BINDING, stages, true));
     pass.resources.push(entry(CAPTURED_BINDING, captured));
 }

@@ -12,7 +12,7 @@ use crate::{
     shaders::{LISTS_GROUP, lighting_modules},
     targets::{
         BASE_COLOR_FORMAT, DEPTH_FORMAT, DIELECTRIC_FORMAT, EMISSIVE_FORMAT, MODEL_FORMAT,
-        NORMAL_FORMAT, RADIANCE_FORMAT,
+        NORMAL_FORMAT, RADIANCE_FORMAT, SAMPLES_FORMAT,
     },
 };
 
@@ -61,6 +61,14 @@ impl RasterPass<'_> {
         matches!(self, Self::Depth | Self::Forward { has_depth: false, .. })
     }
 
+    /// Samples per pixel of its targets. Only forward modes draw several, and they need no G-buffer.
+    fn samples(self, orientation: Orientation) -> u32 {
+        match self {
+            Self::Depth | Self::Forward { .. } | Self::Clay => orientation.samples,
+            Self::GBuffer { .. } | Self::ModelIds | Self::Sheets(_) => 1,
+        }
+    }
+
     /// The depth at which fragments are drawn.
     fn depth_compare(self, depth: DepthMapping) -> wgpu::CompareFunction {
         match depth {
@@ -90,18 +98,20 @@ pub(crate) fn blended(is_lit: bool) -> wgpu::ColorTargetState {
     }
 }
 
-/// What the pipelines of a pass depend on in a view.
+/// What the pipelines of a pass depend on in a view and its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Orientation {
     /// Direction of clip depth.
     pub(crate) depth: DepthMapping,
     /// Whether the view reverses the winding of triangles.
     pub(crate) is_mirrored: bool,
+    /// Samples per pixel.
+    pub(crate) samples: u32,
 }
 
 impl Orientation {
-    pub(crate) fn of_view(view: &View) -> Self {
-        Self { depth: view.depth, is_mirrored: view.is_mirrored() }
+    pub(crate) fn of_view(view: &View, samples: u32) -> Self {
+        Self { depth: view.depth, is_mirrored: view.is_mirrored(), samples }
     }
 }
 
@@ -195,6 +205,9 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
     };
     if let Some(lists) = lists {
         shader = lists.options.set_flags(shader).strategy(lists.lookup.module).without_subgroups();
+        if is("sheets") {
+            shader = shader.looks_up_anywhere();
+        }
     }
     shader
 }
@@ -208,7 +221,12 @@ fn pipeline(
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
     let shown = Shown::from_scene(scene);
-    let shader = shader(pass, key, shown);
+    let samples = pass.samples(orientation);
+    let mut shader = shader(pass, key, shown);
+    if samples > 1 {
+        // A fragment shades the pixel's centre, which may lie off its triangle.
+        shader = shader.looks_up_anywhere();
+    }
     // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, or end with
     // the strategy's look-up, which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of
     // `assign` do, and the strategy's author guarantees it of its own. The other passes have no loop.
@@ -232,8 +250,10 @@ fn pipeline(
     });
     let without_colors = [Some(vertex_layout())];
     let with_colors = [Some(vertex_layout()), Some(color_layout())];
-    let targets: Vec<Option<wgpu::ColorTargetState>> =
-        formats.into_iter().map(|format| Some(pass.color_target(format?))).collect();
+    let targets: Vec<Option<wgpu::ColorTargetState>> = formats
+        .into_iter()
+        .map(|format| Some(pass.color_target(stored_as(format?, samples))))
+        .collect();
     Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -259,7 +279,7 @@ fn pipeline(
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        multisample: Default::default(),
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
         fragment: fragment.map(|entry_point| wgpu::FragmentState {
             module: &module,
             entry_point: Some(entry_point),
@@ -269,6 +289,14 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     }))
+}
+
+/// The format of an image with several samples per pixel.
+fn stored_as(format: wgpu::TextureFormat, samples: u32) -> wgpu::TextureFormat {
+    match format {
+        RADIANCE_FORMAT if samples > 1 => SAMPLES_FORMAT,
+        other => other,
+    }
 }
 
 /// Vertex and fragment entry point of a pass, and the formats that it writes.

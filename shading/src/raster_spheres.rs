@@ -64,6 +64,7 @@ impl RasterSpheres {
             }
             .into());
         }
+        renderer.check_one_sample("RasterSphere")?;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
                 strategy: "RasterSphere".into(),

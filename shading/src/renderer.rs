@@ -12,7 +12,9 @@ use crate::{
     layers::{LayerKinds, LayerOptions, LayerScene},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
-    raster::{Orientation, RasterPass, RasterPipelines},
+    raster::{Orientation, RasterPipelines},
+    resolve::{Resolve, SAMPLES},
+    shared_passes::SharedPasses,
     targets::Targets,
 };
 
@@ -35,34 +37,8 @@ pub struct Renderer {
     shared: SharedPasses,
     /// What is drawn over the opaque surfaces.
     pub(crate) layers: Option<LayerScene>,
-}
-
-/// The pipelines of the passes that all strategies share. Clones share them.
-#[derive(Clone, Debug)]
-struct SharedPasses {
-    depth: RasterPipelines,
-    model_ids: RasterPipelines,
-    gbuffer: RasterPipelines,
-    gbuffer_ids: RasterPipelines,
-    clay: RasterPipelines,
-}
-
-impl SharedPasses {
-    fn new(
-        gpu: &Gpu,
-        frame: &FrameBindings,
-        scene: &SceneGpu,
-        orientation: Orientation,
-    ) -> Result<Self, ShadingError> {
-        let pipelines = |pass| RasterPipelines::new(gpu, frame, scene, orientation, pass);
-        Ok(Self {
-            depth: pipelines(RasterPass::Depth)?,
-            gbuffer: pipelines(RasterPass::GBuffer { ids: false })?,
-            gbuffer_ids: pipelines(RasterPass::GBuffer { ids: true })?,
-            model_ids: pipelines(RasterPass::ModelIds)?,
-            clay: pipelines(RasterPass::Clay)?,
-        })
-    }
+    /// The pass that makes the image of several samples per pixel.
+    pub(crate) resolve: Option<Resolve>,
 }
 
 impl Renderer {
@@ -77,9 +53,9 @@ impl Renderer {
         };
         let models = scene.models.iter().map(model_box).collect();
         let scene = SceneGpu::new(gpu, scene)?;
-        let targets = Targets::new(gpu, view, &scene)?;
+        let targets = Targets::new(gpu, view, &scene, 1)?;
         let inputs = LightingInputs::new(gpu, LightingOptions::default())?;
-        let orientation = Orientation::of_view(view);
+        let orientation = Orientation::of_view(view, 1);
         Ok(Self {
             shared: SharedPasses::new(gpu, &frame, &scene, orientation)?,
             models,
@@ -93,6 +69,7 @@ impl Renderer {
             scene,
             targets,
             layers: None,
+            resolve: None,
         })
     }
 
@@ -102,8 +79,8 @@ impl Renderer {
     pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
-        let targets = Targets::new(&self.gpu, view, &self.scene)?;
-        let orientation = Orientation::of_view(view);
+        let targets = Targets::new(&self.gpu, view, &self.scene, 1)?;
+        let orientation = Orientation::of_view(view, 1);
         let shared = if orientation == self.orientation {
             self.shared.clone()
         } else {
@@ -122,6 +99,7 @@ impl Renderer {
             surface_bounds: self.surface_bounds,
             shared,
             layers: None,
+            resolve: None,
         })
     }
 
@@ -134,8 +112,45 @@ impl Renderer {
     /// [`AssignError::Parameter`] for faulty options, for transparent surfaces in a scene without any, and if the
     /// device cannot blend into single precision.
     pub fn show_layers(&mut self, options: &LayerOptions) -> Result<(), ShadingError> {
-        self.layers = LayerScene::new(&self.gpu, &self.scene, options)?;
+        let layers = LayerScene::new(&self.gpu, &self.scene, options)?;
+        if layers.is_some() {
+            self.check_one_sample("layers over the opaque surfaces")?;
+        }
+        self.layers = layers;
         Ok(())
+    }
+
+    /// Sets the samples per pixel: 1, or 4 for forward modes. The image is their mean. It holds for frames that are
+    /// prepared afterwards, with [`Lighting`](crate::Lighting) that is made afterwards.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for other numbers, and for several samples with layers.
+    pub fn sample_pixels(&mut self, view: &View, samples: u32) -> Result<(), ShadingError> {
+        self.resolve = Resolve::new(&self.gpu, samples, self.layers.is_some())?;
+        self.orientation = Orientation::of_view(view, self.samples());
+        let Self { gpu, frame, scene, orientation, .. } = &*self;
+        let shared = SharedPasses::new(gpu, frame, scene, *orientation)?;
+        let targets = Targets::new(gpu, view, scene, self.samples())?;
+        (self.shared, self.targets) = (shared, targets);
+        Ok(())
+    }
+
+    /// Refuses several samples per pixel for what reads or draws one.
+    pub(crate) fn check_one_sample(&self, what: &str) -> Result<(), AssignError> {
+        if self.resolve.is_none() {
+            return Ok(());
+        }
+        Err(AssignError::Unsupported {
+            strategy: what.into(),
+            asked: format!("{SAMPLES} samples per pixel"),
+            reason: "only forward modes draw them".into(),
+        })
+    }
+
+    /// Samples per pixel.
+    pub fn samples(&self) -> u32 {
+        if self.resolve.is_some() { SAMPLES } else { 1 }
     }
 
     /// The kinds of layers that it draws.
@@ -158,10 +173,11 @@ impl Renderer {
     /// also looks lists up in front of opaque surfaces, and with fog at any depth.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
         let kinds = self.layer_kinds();
-        let samples = match (kinds.fog, kinds.any()) {
-            (true, _) => SampleDomain::AnyDepth,
-            (false, true) => SampleDomain::InFront,
-            (false, false) => SampleDomain::OpaqueSurfaces,
+        let samples = match (kinds.fog, kinds.any(), self.samples()) {
+            (true, ..) => SampleDomain::AnyDepth,
+            (false, true, _) => SampleDomain::InFront,
+            (false, false, 1) => SampleDomain::OpaqueSurfaces,
+            (false, false, _) => SampleDomain::NearSurfaces,
         };
         Frame::new(view, lights)
             .sampled_at(samples)
@@ -185,9 +201,9 @@ impl Renderer {
         let fits = viewport.x.saturating_add(viewport.width) <= width
             && viewport.y.saturating_add(viewport.height) <= height;
         if !fits {
-            self.targets = Targets::new(&self.gpu, view, &self.scene)?;
+            self.targets = Targets::new(&self.gpu, view, &self.scene, self.samples())?;
         }
-        let orientation = Orientation::of_view(view);
+        let orientation = Orientation::of_view(view, self.samples());
         if orientation != self.orientation {
             self.shared = SharedPasses::new(&self.gpu, &self.frame, &self.scene, orientation)?;
             self.orientation = orientation;
@@ -221,7 +237,8 @@ impl Renderer {
         self.record_raster("depth", view, &descriptor, &self.shared.depth, (None, scene), passes);
     }
 
-    /// Records the pass `gbuffer`, after `depth`.
+    /// Records the pass `gbuffer`, after `depth`. With several samples per pixel there is no G-buffer, and it records
+    /// nothing.
     pub fn record_gbuffer(&self, view: &View, passes: &mut dyn Passes) {
         self.record_gbuffer_as(view, false, passes);
     }
@@ -232,6 +249,9 @@ impl Renderer {
     }
 
     fn record_gbuffer_as(&self, view: &View, ids: bool, passes: &mut dyn Passes) {
+        if self.resolve.is_some() {
+            return;
+        }
         let targets = &self.targets;
         let mut colors = vec![Some(cleared(&targets.base_color)), Some(cleared(&targets.normal))];
         colors.push(targets.emissive.as_ref().map(cleared));
@@ -247,8 +267,12 @@ impl Renderer {
         self.record_raster("gbuffer", view, &descriptor, pipelines, (None, scene), passes);
     }
 
-    /// Records the pass `model-ids`, after `depth`: the model of each pixel.
+    /// Records the pass `model-ids`, after `depth`: the model of each pixel. With several samples per pixel it records
+    /// nothing.
     pub fn record_model_ids(&self, view: &View, passes: &mut dyn Passes) {
+        if self.resolve.is_some() {
+            return;
+        }
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &[Some(cleared(&self.targets.model_ids))],
             depth_stencil_attachment: Some(self.depth_attachment(None)),
@@ -281,7 +305,8 @@ impl Renderer {
         groups: (Option<&wgpu::BindGroup>, &wgpu::BindGroup),
         passes: &mut dyn Passes,
     ) {
-        let mut color = cleared(&self.targets.radiance);
+        let targets = &self.targets;
+        let mut color = cleared(targets.samples.as_ref().unwrap_or(&targets.radiance));
         color.ops.load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
         let clear = (!has_depth).then(|| view.depth_clear());
         let descriptor = wgpu::RenderPassDescriptor {
@@ -290,6 +315,9 @@ impl Renderer {
             ..Default::default()
         };
         self.record_raster(name, view, &descriptor, pipelines, groups, passes);
+        if let (Some(resolve), Some(samples)) = (&self.resolve, &targets.samples) {
+            resolve.record(&self.gpu, samples, &targets.radiance, targets.size, passes);
+        }
     }
 
     fn record_raster(

@@ -82,6 +82,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::fog_light", include_str!("shaders/fog_light.wesl"))
         .module("package::fog_sum", include_str!("shaders/fog_sum.wesl"))
         .module("package::fog_apply", include_str!("shaders/fog_apply.wesl"))
+        .module("package::resolve", include_str!("shaders/resolve.wesl"))
         .module("package::particles", include_str!("shaders/particles.wesl"))
         .module("package::capture", include_str!("shaders/capture.wesl"))
         .module("package::asked", include_str!("shaders/asked.wesl"))

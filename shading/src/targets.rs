@@ -16,6 +16,8 @@ pub(crate) const EMISSIVE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgb
 pub(crate) const DIELECTRIC_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Lit radiance in single precision, so that images compare bit for bit.
 pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Lit radiance of several samples per pixel: WebGPU has no such image in single precision.
+pub(crate) const SAMPLES_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Index of the model.
 pub(crate) const MODEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
@@ -41,11 +43,18 @@ pub struct Targets {
     pub radiance: wgpu::TextureView,
     /// The texture of `radiance`.
     pub radiance_texture: wgpu::Texture,
+    /// Lit radiance of each sample, if pixels have several.
+    pub(crate) samples: Option<wgpu::TextureView>,
 }
 
 impl Targets {
     /// Creates targets that contain the view's viewport.
-    pub(crate) fn new(gpu: &Gpu, view: &View, scene: &SceneGpu) -> Result<Self, ShadingError> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        view: &View,
+        scene: &SceneGpu,
+        samples: u32,
+    ) -> Result<Self, ShadingError> {
         let viewport = view.viewport;
         let width = viewport.x.saturating_add(viewport.width);
         let height = viewport.y.saturating_add(viewport.height);
@@ -70,7 +79,9 @@ impl Targets {
         }
         let what = format!("images of {width}x{height}");
         let texel = if scene.has_dielectrics() { 52 } else { 44 };
-        Ok(gpu.allocate(&what, pixels * texel, || Self::make(gpu, [width, height], scene))?)
+        let more = if samples > 1 { u64::from(samples) * (4 + 8) } else { 0 };
+        let make = || Self::make(gpu, [width, height], scene, samples);
+        Ok(gpu.allocate(&what, pixels * (texel + more), make)?)
     }
 
     /// Refuses a viewport that the images do not hold.
@@ -114,20 +125,21 @@ impl Targets {
         }
     }
 
-    fn make(gpu: &Gpu, size: [u32; 2], scene: &SceneGpu) -> Self {
+    fn make(gpu: &Gpu, size: [u32; 2], scene: &SceneGpu, samples: u32) -> Self {
         let [width, height] = size;
-        let texture = |label, format, usage| {
+        let texture_of = |label, format, usage, sample_count| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
-                sample_count: 1,
+                sample_count,
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
                 view_formats: &[],
             })
         };
+        let texture = |label, format, usage| texture_of(label, format, usage, 1);
         let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
         let view_of = |t: &wgpu::Texture| t.create_view(&wgpu::TextureViewDescriptor::default());
         let radiance_texture = texture(
@@ -137,7 +149,9 @@ impl Targets {
         );
         Self {
             size,
-            depth: view_of(&texture("depth", DEPTH_FORMAT, sampled)),
+            depth: view_of(&texture_of("depth", DEPTH_FORMAT, sampled, samples)),
+            samples: (samples > 1)
+                .then(|| view_of(&texture_of("samples", SAMPLES_FORMAT, sampled, samples))),
             base_color: view_of(&texture("base colour", BASE_COLOR_FORMAT, sampled)),
             normal: view_of(&texture("normal", NORMAL_FORMAT, sampled)),
             emissive: scene

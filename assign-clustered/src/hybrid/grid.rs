@@ -91,18 +91,17 @@ impl Assignment for HybridGrid {
         frame.view.check()?;
         let mut froxels =
             FroxelsUniform::new(self.size, Slices::default(), frame.view, frame.lights.bounds())?;
-        let depth =
-            match frame.samples {
-                SampleDomain::InFront | SampleDomain::AnyDepth => None,
-                SampleDomain::OpaqueSurfaces => Some(frame.depth.ok_or_else(|| {
-                    AssignError::Missing { strategy: self.id(), missing: "depth" }
-                })?),
-            };
+        froxels.serve(frame, &self.id())?;
+        // Cells that only other samples can lie in would have no lists.
+        let depth = match frame.samples {
+            SampleDomain::OpaqueSurfaces => Some(frame.depth_image(&self.id())?),
+            SampleDomain::NearSurfaces | SampleDomain::InFront | SampleDomain::AnyDepth => None,
+        };
         froxels.surfaces_only = u32::from(depth.is_some());
         self.lists.prepare(gpu, frame.lights, froxels.froxel_count())?;
         self.lists.writes_mut().write(&self.froxels, 0, bytes_of(&froxels))?;
         self.look_up.bind(gpu, &self.lists, &[entry(FROXELS_BINDING, &self.froxels)]);
-        self.passes.prepare(gpu, frame, &froxels, &self.froxels, &mut self.lists, depth)
+        self.passes.prepare(gpu, frame, &froxels, &self.froxels, &mut self.lists, depth.as_ref())
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {

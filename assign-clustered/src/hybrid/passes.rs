@@ -1,8 +1,8 @@
 //! The passes of HG: what they bind, and the order in which they run.
 
 use assign::{
-    AssignError, Frame, FrameBindings, Gpu, KeptBindGroup, LightKinds, LightLists, ListsBindings,
-    Passes, SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, DepthImage, DepthKernels, Frame, FrameBindings, Gpu, KeptBindGroup, LightKinds,
+    LightLists, ListsBindings, Passes, SampleDomain, entry, kernel, storage_entry, uniform_entry,
 };
 
 use super::{
@@ -27,12 +27,11 @@ pub(crate) struct HybridPasses {
     cells_layout: wgpu::BindGroupLayout,
     bound_cells: KeptBindGroup,
     lists: ListsBindings,
-    depth_layout: wgpu::BindGroupLayout,
+    occupancy: DepthKernels<Occupancy>,
     bound_depth: KeptBindGroup,
     /// The live cells: first as `clear` and `reserve_lists` write them, then as `sort` reads them.
     live_layouts: [wgpu::BindGroupLayout; 2],
     bound_live: [KeptBindGroup; 2],
-    occupancy: wgpu::ComputePipeline,
     clear: wgpu::ComputePipeline,
     reserve: wgpu::ComputePipeline,
     sort: wgpu::ComputePipeline,
@@ -54,25 +53,23 @@ impl HybridPasses {
         let uniforms = [uniform_entry(3, uniform_stages), uniform_entry(PARTS, uniform_stages)];
         let cells = cells_entries(uniform_stages, scatter.stages());
         let cells_layout = gpu.bind_group_layout("hybrid cells", &[&uniforms, &cells[..]].concat());
-        let depth_layout = gpu.bind_group_layout(
-            "hybrid depth",
-            &[texture_entry(0, stages, wgpu::TextureSampleType::Depth)],
-        );
         let live_layouts = [false, true].map(|read_only| {
             gpu.bind_group_layout("hybrid live", &[storage_entry(0, stages, read_only)])
         });
         let bound_lists =
             ListsBindings::of_kernel(gpu, "hybrid lists", &cells_entries(stages, stages));
         let kinds = LightKinds::default();
-        let occupancy = HybridShader::Occupancy.create(gpu, kinds)?;
         let reserve = HybridShader::Reserve.create(gpu, kinds)?;
         let sort = HybridShader::Sort.create(gpu, kinds)?;
-        let depth_groups = [frame.layout(), &cells_layout, &depth_layout];
         let [written, read_only] = &live_layouts;
         let reserve_groups = [None, Some(bound_lists.layout()), Some(written)];
         let sort_groups = [None, Some(bound_lists.layout()), Some(read_only)];
         Ok(Self {
-            occupancy: kernel::pipeline(gpu, &occupancy, "occupancy", &depth_groups),
+            occupancy: DepthKernels::new(Occupancy::new(
+                gpu,
+                false,
+                [frame.layout(), &cells_layout],
+            )?),
             clear: kernel::pipeline(gpu, &reserve, "clear", &reserve_groups),
             reserve: kernel::pipeline(gpu, &reserve, "reserve_lists", &reserve_groups),
             sort: kernel::pipeline(gpu, &sort, "sort_lists", &sort_groups),
@@ -80,7 +77,6 @@ impl HybridPasses {
             cells_layout,
             bound_cells: KeptBindGroup::default(),
             lists: bound_lists,
-            depth_layout,
             bound_depth: KeptBindGroup::default(),
             live_layouts,
             bound_live: Default::default(),
@@ -102,9 +98,13 @@ impl HybridPasses {
         froxels: &FroxelsUniform,
         uniform: &wgpu::Buffer,
         lists: &mut LightLists,
-        depth: Option<&wgpu::TextureView>,
+        depth: Option<&DepthImage>,
     ) -> Result<(), AssignError> {
         self.frame.update_in(gpu, frame, lists.writes_mut())?;
+        if let Some(depth) = depth {
+            let layouts = [self.frame.layout(), &self.cells_layout];
+            self.occupancy.choose(depth, || Occupancy::new(gpu, true, layouts))?;
+        }
         let parts = HybridParts::new(froxels);
         self.buffers.grow(gpu, froxels, parts, lists)?;
         self.bind(gpu, uniform, lists, depth);
@@ -137,7 +137,7 @@ impl HybridPasses {
         gpu: &Gpu,
         uniform: &wgpu::Buffer,
         lists: &LightLists,
-        depth: Option<&wgpu::TextureView>,
+        depth: Option<&DepthImage>,
     ) {
         let Buffers { parts, masks, cursors, unsorted, live } = &self.buffers;
         let cells = [
@@ -153,8 +153,9 @@ impl HybridPasses {
         for (bound, layout) in self.bound_live.iter_mut().zip(&self.live_layouts) {
             bound.bind(gpu, "hybrid live", layout, &[entry(0, live.buffer())]);
         }
-        if let Some(view) = depth {
-            self.bound_depth.bind(gpu, "hybrid depth", &self.depth_layout, &[texture(0, view)]);
+        if let Some(depth) = depth {
+            let layout = &self.occupancy.chosen().layout;
+            self.bound_depth.bind(gpu, "hybrid depth", layout, &[depth.entry(0)]);
         }
     }
 
@@ -169,7 +170,7 @@ impl HybridPasses {
             if reads_depth {
                 self.bind_cells(pass);
                 pass.set_bind_group(2, self.bound_depth.get(), &[]);
-                pass.set_pipeline(&self.occupancy);
+                pass.set_pipeline(&self.occupancy.chosen().pipeline);
                 pass.dispatch_workgroups(sizes.blocks[0], sizes.blocks[1], 1);
             }
         });
@@ -211,6 +212,28 @@ impl HybridPasses {
     fn bind_lists(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(LISTS_GROUP, self.lists.bind_group(), &[]);
         pass.set_bind_group(2, self.bound_live[0].get(), &[]);
+    }
+}
+
+/// The kernel that reads the depth buffer.
+#[derive(Debug)]
+struct Occupancy {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Occupancy {
+    fn new(
+        gpu: &Gpu,
+        multisampled: bool,
+        [frame, cells]: [&wgpu::BindGroupLayout; 2],
+    ) -> Result<Self, AssignError> {
+        let entries = [DepthImage::layout(0, wgpu::ShaderStages::COMPUTE, multisampled)];
+        let layout = gpu.bind_group_layout("hybrid depth", &entries);
+        let shader = HybridShader::Occupancy { multisampled };
+        let module = shader.create(gpu, LightKinds::default())?;
+        let pipeline = kernel::pipeline(gpu, &module, "occupancy", &[frame, cells, &layout]);
+        Ok(Self { layout, pipeline })
     }
 }
 

@@ -21,7 +21,10 @@ pub const HYBRID_WESL: StrategyWesl<'static> = StrategyWesl {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HybridShader {
     /// Finds the cells that hold samples.
-    Occupancy,
+    Occupancy {
+        /// Whether the depth buffer has several samples per pixel.
+        multisampled: bool,
+    },
     /// Adds lights to cells by compute lanes: first counts, then places.
     Scatter,
     /// The same by the rasteriser.
@@ -34,8 +37,14 @@ pub enum HybridShader {
 
 impl HybridShader {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Occupancy, Self::Scatter, Self::Raster, Self::Reserve, Self::Sort];
+    pub const ALL: [Self; 6] = [
+        Self::Occupancy { multisampled: false },
+        Self::Occupancy { multisampled: true },
+        Self::Scatter,
+        Self::Raster,
+        Self::Reserve,
+        Self::Sort,
+    ];
 
     /// Its linked WGSL, for tests of layout and validity.
     pub fn source(self, kinds: LightKinds) -> Result<String, AssignError> {
@@ -44,7 +53,7 @@ impl HybridShader {
 
     fn root(self) -> &'static str {
         match self {
-            Self::Occupancy => "package::hybrid_occupancy",
+            Self::Occupancy { .. } => "package::hybrid_occupancy",
             Self::Scatter => "package::hybrid_scatter",
             Self::Raster => "package::hybrid_raster",
             Self::Reserve => "package::hybrid_reserve",
@@ -58,9 +67,9 @@ impl HybridShader {
             .module("package::hybrid_parts", include_str!("../shaders/hybrid_parts.wesl"))
             .light_kinds(kinds);
         match self {
-            Self::Occupancy => {
-                shader.module(self.root(), include_str!("../shaders/hybrid_occupancy.wesl"))
-            }
+            Self::Occupancy { multisampled } => shader
+                .module(self.root(), include_str!("../shaders/hybrid_occupancy.wesl"))
+                .flag("multisampled", multisampled),
             Self::Scatter | Self::Raster => {
                 let root = match self {
                     Self::Raster => include_str!("../shaders/hybrid_raster.wesl"),

@@ -120,7 +120,7 @@ fn list(seen: &Seen, group: u32, findings: &mut Findings) {
         findings.add(Breach::OutsideBuffer, place, detail);
         return;
     };
-    if Seen::fell_back(list) && group != ALL_LIGHTS && list.count == seen.light_count {
+    if Seen::fell_back(list) && group != ALL_LIGHTS && list.count >= seen.light_count {
         // The list shares the entries of record 0, which are checked once.
         return;
     }
@@ -153,7 +153,17 @@ fn list(seen: &Seen, group: u32, findings: &mut Findings) {
 fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings) {
     let counters = seen.snapshot.counters;
     let lists = || groups.iter().filter_map(|&g| seen.list(g));
-    let overflowed = lists().filter(|l| Seen::fell_back(*l)).count() as u64;
+    let all = lists().filter(|l| Seen::fell_back(*l)).count() as u64;
+    // Groups without samples have all lights too, and only the counters tell which of them overflowed. What a sample
+    // of the depth buffer reads did overflow.
+    let mut read: Vec<u32> =
+        seen.probes.iter().filter(|p| p.is_on_surface()).map(|p| p.group).collect();
+    read.sort_unstable();
+    read.dedup();
+    let is_read = |group: &&u32| read.binary_search(group).is_ok();
+    let read = groups.iter().filter(is_read).filter_map(|&g| seen.list(g));
+    let least = read.filter(|l| Seen::fell_back(*l)).count() as u64;
+    let overflowed = u64::from(counters.overflowed_groups).clamp(least, all);
     let fitting = || lists().filter(|l| !Seen::fell_back(*l) && *l != UNWRITTEN);
     let listed: u64 = fitting().map(|l| u64::from(l.count)).sum();
     let longest = fitting().map(|l| l.count).max().unwrap_or(0);

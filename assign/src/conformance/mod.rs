@@ -75,8 +75,8 @@ pub use counted_passes::CountedPasses;
 use faulty::{Fault, Faulty};
 pub use flat_depth::flat_depth;
 pub use linked::{LinkedModule, StructLayout};
-pub use reworded::{Reworded, reword};
-use rig::Rig;
+pub use reworded::{Reworded, reword, trusting};
+use rig::{Asked, Rig};
 pub use run_kernel::{Bound, download, run_kernel, upload};
 pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
@@ -116,10 +116,31 @@ pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, Confor
 /// Runs all cases with samples on surfaces and in front of them ([`SampleDomain::InFront`]). [`run`] does not ask for
 /// these. A refusal is an error.
 pub fn run_in_front(make: &Make<'_>) -> Result<Report, ConformanceError> {
+    every_case(CASES, Asked::stated(SampleDomain::InFront), make)
+}
+
+/// The cases of [`run_unstated`]: among them, frames in which groups hold samples that held none before, and the
+/// reverse. The first ones look up all samples of the depth buffer, so they show which groups hold samples.
+const UNSTATED_CASES: [&str; 5] =
+    ["33-lights", "resize", "camera-teleports", "light-count-changes", "lights-from-gpu"];
+const WHOLE_CASES: usize = 4;
+
+/// Runs some cases with samples at any depth in frames that state only those on opaque surfaces. No light may be
+/// lost: with [`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere), look-ups that no list serves read all
+/// lights, and without, those in groups without samples do. A refusal is an error.
+pub fn run_unstated(make: &Make<'_>) -> Result<Report, ConformanceError> {
+    let cases = UNSTATED_CASES.iter().map(|name| find(name).copied());
+    let cases: Vec<Case> = cases.collect::<Result<_, _>>()?;
+    every_case(&cases[..WHOLE_CASES], Asked::unstated(false), make)?;
+    every_case(&cases, Asked::unstated(true), make)
+}
+
+/// Runs cases. A refusal is an error.
+fn every_case(cases: &[Case], asked: Asked, make: &Make<'_>) -> Result<Report, ConformanceError> {
     let rig = rig()?;
     let mut report = Report { strategy: make(&rig.gpu).map_err(setup)?.id(), cases: Vec::new() };
-    for case in CASES {
-        let outcome = session::run(rig, case, make, SampleDomain::InFront);
+    for case in cases {
+        let outcome = session::run(rig, case, make, asked);
         let outcome = outcome.map_err(|error| failed(case, error))?;
         report.cases.push(CaseReport { case: case.name, outcome });
     }
@@ -230,7 +251,7 @@ fn find(name: &str) -> Result<&'static Case, ConformanceError> {
 }
 
 fn one(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
-    let outcome = session::run(rig, case, make, SampleDomain::AnyDepth);
+    let outcome = session::run(rig, case, make, Asked::stated(SampleDomain::AnyDepth));
     let outcome = outcome.map_err(|error| failed(case, error))?;
     Ok(CaseReport { case: case.name, outcome })
 }
@@ -254,7 +275,8 @@ mod tests {
         let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
             Ok(Box::new(Everything::new(gpu)?))
         };
-        let outcome = session::run(rig().unwrap(), &case, &make, SampleDomain::AnyDepth);
+        let outcome =
+            session::run(rig().unwrap(), &case, &make, Asked::stated(SampleDomain::AnyDepth));
         let Ok(Outcome::Failed(violations)) = outcome else {
             panic!("{outcome:?}");
         };

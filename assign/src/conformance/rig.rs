@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
-use super::stage::{Sample, Stage};
+use super::stage::{IN_THE_OPEN, Sample, Stage};
 use crate::{
     AssignError, Assignment, FrameBindings, Gpu, LightKinds, LightList, SampleDomain, Shader,
     entry, kernel::bind_entries, storage_entry, texture, texture_entry, uniform_entry,
@@ -32,6 +32,38 @@ pub(super) struct Probe {
     pub(super) hash: u32,
 }
 
+impl Probe {
+    /// Whether the sample is one of the depth buffer.
+    pub(super) fn is_on_surface(&self) -> bool {
+        self.model_ix != IN_THE_OPEN
+    }
+}
+
+/// What a case looks up, and what it tells the strategy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Asked {
+    /// The samples that are looked up.
+    pub(super) samples: SampleDomain,
+    /// What the frame says about them.
+    pub(super) declared: SampleDomain,
+    /// Whether look-ups ask whether their list serves them.
+    pub(super) anywhere: bool,
+}
+
+impl Asked {
+    /// Samples of a domain that the frame states.
+    pub(super) fn stated(samples: SampleDomain) -> Self {
+        let anywhere = samples != SampleDomain::OpaqueSurfaces;
+        Self { samples, declared: samples, anywhere }
+    }
+
+    /// Samples at any depth in a frame of opaque surfaces.
+    pub(super) fn unstated(anywhere: bool) -> Self {
+        let declared = SampleDomain::OpaqueSurfaces;
+        Self { samples: SampleDomain::AnyDepth, declared, anywhere }
+    }
+}
+
 /// A stage's surfaces and samples on the GPU.
 pub(super) struct Surfaces {
     pub(super) depth: wgpu::TextureView,
@@ -39,6 +71,8 @@ pub(super) struct Surfaces {
     probes: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     pub(super) count: u32,
+    /// Whether look-ups ask whether their list serves them ([`Shader::looks_up_anywhere`]).
+    anywhere: bool,
 }
 
 /// The device and the pipeline that draws surfaces. All strategies of a process share them.
@@ -63,16 +97,12 @@ impl Rig {
         Self { draw: draw_pipeline(&gpu), gpu, probe_layout, dump_layout }
     }
 
-    /// Uploads the samples of a domain, and draws the surfaces.
-    pub(super) fn set_up(
-        &self,
-        stage: &Stage,
-        domain: SampleDomain,
-    ) -> Result<Surfaces, AssignError> {
+    /// Uploads the samples that are looked up, and draws the surfaces.
+    pub(super) fn set_up(&self, stage: &Stage, asked: Asked) -> Result<Surfaces, AssignError> {
         let device = &self.gpu.device;
         let (on_surfaces, open) = stage.samples.split_at(stage.on_surfaces);
-        let is_asked = |sample: &&Sample| match domain {
-            SampleDomain::OpaqueSurfaces => false,
+        let is_asked = |sample: &&Sample| match asked.samples {
+            SampleDomain::OpaqueSurfaces | SampleDomain::NearSurfaces => false,
             SampleDomain::InFront => stage.is_in_front(sample),
             SampleDomain::AnyDepth => true,
         };
@@ -94,7 +124,8 @@ impl Rig {
         self.draw(stage, &depth, &normals)?;
         let entries = [entry(0, &buffer), texture(1, &depth), texture(2, &normals)];
         let bind_group = bind_entries(&self.gpu, &self.probe_layout, &entries);
-        Ok(Surfaces { depth, normals, probes: buffer, bind_group, count: probes.len() as u32 })
+        let count = probes.len() as u32;
+        Ok(Surfaces { depth, normals, probes: buffer, bind_group, count, anywhere: asked.anywhere })
     }
 
     fn draw(
@@ -151,13 +182,14 @@ impl Rig {
         strategy: &dyn Assignment,
         frame: &FrameBindings,
         kinds: LightKinds,
-        dump: bool,
+        (anywhere, dump): (bool, bool),
     ) -> Result<wgpu::ComputePipeline, AssignError> {
         let lookup = strategy.lookup();
         let module = Shader::new(LISTS_GROUP)
             .module("package::probe", include_str!("probe.wesl"))
             .strategy(lookup.module)
             .flag("dump", dump)
+            .flag("anywhere", anywhere)
             .light_kinds(kinds)
             .create(&self.gpu, "package::probe")?;
         let probe = if dump { &self.dump_layout } else { &self.probe_layout };
@@ -178,7 +210,7 @@ impl Rig {
             let id = strategy.id();
             return Err(AssignError::Device(format!("{id} has no bind group after prepare")));
         }
-        let pipeline = self.probe_pipeline(strategy, frame, kinds, false)?;
+        let pipeline = self.probe_pipeline(strategy, frame, kinds, (surfaces.anywhere, false))?;
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, frame.bind_group(), &[]);
@@ -198,7 +230,7 @@ impl Rig {
         kinds: LightKinds,
         surfaces: &Surfaces,
     ) -> Result<(Vec<LightList>, Vec<u32>), AssignError> {
-        let pipeline = self.probe_pipeline(strategy, frame, kinds, true)?;
+        let pipeline = self.probe_pipeline(strategy, frame, kinds, (surfaces.anywhere, true))?;
         let run = |places: &[u32]| -> Result<Vec<u32>, AssignError> {
             self.run_dump(&pipeline, (frame.bind_group(), strategy.bind_group()), surfaces, places)
         };

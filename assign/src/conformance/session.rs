@@ -1,5 +1,7 @@
 //! Draws the frames of a case with one instance of a strategy, and checks each frame.
 
+use std::collections::HashSet;
+
 use bytemuck::cast_slice;
 use glam::Vec3;
 
@@ -9,7 +11,7 @@ use super::{
     check,
     feed::Feed,
     plan::{Lit, Living, Plan},
-    rig::{Rig, Surfaces},
+    rig::{Asked, Probe, Rig, Surfaces},
     seen::{Seen, UNWRITTEN},
     stage::Rng,
     violation::{Breach, Figures, Findings, Outcome, Place},
@@ -24,19 +26,19 @@ const FRAMES_TO_GROW: u32 = 6;
 /// Size of the pool in the overflow case, entries.
 const TINY_POOL: u32 = 64;
 
-/// Runs one case with samples in `domain`, or on surfaces only if the strategy refuses look-ups at any depth.
+/// Runs one case with the samples in `asked`, or on surfaces only if the strategy refuses look-ups at any depth.
 /// Violations are an outcome; an error is any other failure.
 pub(super) fn run(
     rig: &Rig,
     case: &Case,
     make: &Make<'_>,
-    domain: SampleDomain,
+    asked: Asked,
 ) -> Result<Outcome, AssignError> {
     let seed =
         case.name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     let mut findings = Findings::new(case.name);
     let mut figures = Figures::default();
-    let mut run = Run { rig, make, domain, findings: &mut findings, figures: &mut figures };
+    let mut run = Run { rig, make, asked, findings: &mut findings, figures: &mut figures };
     let plan = (case.build)(&mut Rng::new(seed));
     let done = match &plan {
         Plan::Still(lit) => run.sequence(std::slice::from_ref(lit)),
@@ -69,7 +71,7 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
     let Plan::Still(lit) = (case.build)(&mut Rng::new(1)) else {
         return Ok(true);
     };
-    let mut session = Session::new(rig, make, SampleDomain::AnyDepth)?;
+    let mut session = Session::new(rig, make, Asked::stated(SampleDomain::AnyDepth))?;
     session.set_up(rig, &lit)?;
     session.draw(rig, &lit, false)?;
     Ok(session.strategy.lists().group_count() > 0)
@@ -79,7 +81,7 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
 struct Run<'r> {
     rig: &'r Rig,
     make: &'r Make<'r>,
-    domain: SampleDomain,
+    asked: Asked,
     findings: &'r mut Findings,
     figures: &'r mut Figures,
 }
@@ -87,7 +89,7 @@ struct Run<'r> {
 impl Run<'_> {
     /// Draws the stages in sequence with one instance. Draws each stage's last frame twice.
     fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
-        let mut session = Session::new(self.rig, self.make, self.domain)?;
+        let mut session = Session::new(self.rig, self.make, self.asked)?;
         let mut fresh = true;
         for (stage, lit) in (0..).zip(stages) {
             self.findings.stage = stage;
@@ -146,13 +148,13 @@ impl Run<'_> {
             self.figures.fitting[0] += seen.probes.len() as u64;
             self.figures.fitting[1] += pairs.listed;
         }
-        self.figures.any_depth |= session.domain == SampleDomain::AnyDepth;
+        self.figures.any_depth |= session.asked.samples == SampleDomain::AnyDepth;
         Ok(seen)
     }
 
     /// Draws frames of lights that change in each of them.
     fn living(&mut self, living: &Living) -> Result<(), AssignError> {
-        let mut session = Session::living(self.rig, self.make, living, self.domain)?;
+        let mut session = Session::living(self.rig, self.make, living, self.asked)?;
         for (stage, lit) in (0..).zip(&living.frames) {
             self.findings.stage = stage;
             session.set_up(self.rig, lit)?;
@@ -194,7 +196,7 @@ impl Run<'_> {
     /// With a pool that is far too small, no pair is missed and the overflow is counted. Without
     /// the limit, the overflow ends.
     fn overflow(&mut self, lit: &Lit) -> Result<(), AssignError> {
-        let mut session = Session::new(self.rig, self.make, self.domain)?;
+        let mut session = Session::new(self.rig, self.make, self.asked)?;
         session.strategy.lists_mut().limit_pool(TINY_POOL);
         session.set_up(self.rig, lit)?;
         for wipe in [true, false] {
@@ -219,7 +221,7 @@ impl Run<'_> {
     fn quarantine(&mut self, clean: &Lit, dirty: &Lit, bad: &[usize]) -> Result<(), AssignError> {
         let mut settled = Vec::new();
         for lit in [clean, dirty] {
-            let mut session = Session::new(self.rig, self.make, self.domain)?;
+            let mut session = Session::new(self.rig, self.make, self.asked)?;
             session.set_up(self.rig, lit)?;
             settled.push(self.settle(&mut session, lit, true)?);
             let rejected = session.lights.rejected().iter().map(|r| r.index);
@@ -243,19 +245,19 @@ struct Session {
     frame: FrameBindings,
     lights: LightBuffer,
     surfaces: Option<Surfaces>,
-    domain: SampleDomain,
+    asked: Asked,
     /// The renderer's own buffers of lights, if it writes them on the GPU.
     feed: Option<Feed>,
 }
 
 impl Session {
-    fn new(rig: &Rig, make: &Make<'_>, domain: SampleDomain) -> Result<Self, AssignError> {
+    fn new(rig: &Rig, make: &Make<'_>, asked: Asked) -> Result<Self, AssignError> {
         Ok(Self {
             strategy: make(&rig.gpu)?,
             frame: FrameBindings::new(&rig.gpu),
             lights: LightBuffer::new(&rig.gpu, &[])?,
             surfaces: None,
-            domain,
+            asked,
             feed: None,
         })
     }
@@ -265,12 +267,12 @@ impl Session {
         rig: &Rig,
         make: &Make<'_>,
         living: &Living,
-        domain: SampleDomain,
+        asked: Asked,
     ) -> Result<Self, AssignError> {
         let order = LightOrder::Gpu { every: living.every };
         let lights = LightBuffer::ordered(&rig.gpu, &[], order)?;
         let feed = living.from_gpu.then(|| Feed::new(&rig.gpu, &living.frames)).transpose()?;
-        Ok(Self { lights, feed, ..Self::new(rig, make, domain)? })
+        Ok(Self { lights, feed, ..Self::new(rig, make, asked)? })
     }
 
     /// Uploads a stage.
@@ -283,22 +285,25 @@ impl Session {
             None => self.lights.update(&rig.gpu, &lit.lights)?,
         }
         if lit.opaque_only {
-            self.domain = SampleDomain::OpaqueSurfaces;
+            self.asked = Asked::stated(SampleDomain::OpaqueSurfaces);
         }
-        self.surfaces = Some(rig.set_up(&lit.stage, self.domain)?);
+        self.surfaces = Some(rig.set_up(&lit.stage, self.asked)?);
         Ok(())
     }
 
     /// Prepares a frame. If the strategy refuses look-ups at any depth, prepares it with look-ups on opaque
     /// surfaces.
     fn prepare(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
-        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.asked.declared);
         self.frame.update(&rig.gpu, &frame)?;
         match self.strategy.prepare(&rig.gpu, &frame) {
-            Err(AssignError::Unsupported { .. }) if self.domain == SampleDomain::AnyDepth => {
-                self.domain = SampleDomain::OpaqueSurfaces;
+            Err(AssignError::Unsupported { .. })
+                if self.asked.declared == SampleDomain::AnyDepth =>
+            {
+                self.asked = Asked::stated(SampleDomain::OpaqueSurfaces);
                 self.set_up(rig, lit)?;
-                let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+                let frame =
+                    frame_of(lit, &self.lights, self.surfaces.as_ref(), self.asked.declared);
                 self.strategy.prepare(&rig.gpu, &frame)
             }
             other => other,
@@ -316,7 +321,7 @@ impl Session {
             gpu.queue.write_buffer(lists, 8, cast_slice(&records));
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.asked.declared);
         let mut passes = EncoderPasses { encoder: &mut encoder };
         self.lights.record(&mut passes);
         self.strategy.record(&frame, &mut passes);
@@ -325,9 +330,13 @@ impl Session {
         let kinds = self.kinds();
         rig.record_probe(&mut encoder, &*self.strategy, &self.frame, kinds, surfaces)?;
         gpu.queue.submit([encoder.finish()]);
+        let mut probes = rig.read_probes(surfaces)?;
+        if self.asked == Asked::unstated(false) {
+            keep_unlisted(&mut probes);
+        }
         let seen = Seen {
             snapshot: self.strategy.lists().snapshot(gpu)?,
-            probes: rig.read_probes(surfaces)?,
+            probes,
             group_count,
             light_count: self.lights.read(gpu)?.len() as u32,
             knows_normals: self.strategy.needs().normals,
@@ -348,6 +357,13 @@ impl Session {
             false => LightKinds::default(),
         }
     }
+}
+
+/// Keeps the samples on surfaces, and of the others those whose group holds no sample on a surface.
+fn keep_unlisted(probes: &mut Vec<Probe>) {
+    let groups: HashSet<u32> =
+        probes.iter().filter(|p| p.is_on_surface()).map(|p| p.group).collect();
+    probes.retain(|probe| probe.is_on_surface() || !groups.contains(&probe.group));
 }
 
 fn frame_of<'a>(

@@ -51,6 +51,7 @@ fn comparable(a: &Record, b: &Record) -> bool {
     is_same_scene
         && is_same_motion
         && a.setting.layers == b.setting.layers
+        && a.setting.msaa == b.setting.msaa
         && a.setting.path_hash == b.setting.path_hash
         && key(a) == key(b)
 }

@@ -60,6 +60,7 @@ pub(crate) fn setting(record: &Record) -> String {
         parts.push(format!("lights move: {motion}"));
     }
     parts.extend(record.setting.layers.iter().flat_map(layer_words));
+    parts.extend(record.setting.msaa.map(|samples| format!("{samples} samples per pixel")));
     parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")
 }

@@ -32,7 +32,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
         (name, _) if makes_lights(name) => PassKind::Other,
         ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
         ("depth", Mode::ForwardNoPrepass) => PassKind::Assign,
-        ("depth" | "gbuffer" | "fog-sum" | "fog-apply", _) => PassKind::Scene,
+        ("depth" | "gbuffer" | "resolve" | "fog-sum" | "fog-apply", _) => PassKind::Scene,
         ("shade" | "clay" | "fog-light" | "blend", _) => PassKind::Shade,
         _ => PassKind::Assign,
     }

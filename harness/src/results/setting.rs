@@ -76,6 +76,9 @@ pub struct Setting {
     /// What is drawn over the opaque surfaces; absent if nothing is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayerSetting>,
+    /// Samples per pixel; absent if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub msaa: Option<u32>,
     /// The seed of the scattered lights and particles.
     pub seed: u64,
     /// The camera's position, world space, metres.

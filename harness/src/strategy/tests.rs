@@ -66,3 +66,24 @@ fn it_is_not_counted_among_the_comparison_papers() {
     record.strategy = "SC-E".into();
     assert!(record.strategy.is_of_the_paper());
 }
+
+/// A depth buffer that ends before the viewport does would hold zeros there: lights would be lost, or a driver would
+/// refuse it.
+#[test]
+fn every_strategy_that_reads_depth_refuses_one_that_is_too_small() {
+    let gpu = assign::Gpu::noop().expect("a device");
+    let lights = assign::LightBuffer::new(&gpu, &[]).expect("no lights");
+    let view = assign::View::look_at(glam::Vec3::ONE, glam::Vec3::ZERO, 1.0, 0.1, [64, 48]);
+    let depth = assign::conformance::flat_depth(&gpu, [64, 47], 0.5);
+    let frame = assign::Frame::new(&view, &lights).with_depth(&depth).with_normals(&depth);
+    let mut refused = 0;
+    for row in rows().filter(|row| row.needs.depth) {
+        let made = crate::choice::Choice::parse(&row.default_id()).expect("an id").make(&gpu);
+        let Ok(Method::Lists { mut strategy, .. }) = made else { continue };
+        match strategy.prepare(&gpu, &frame) {
+            Err(assign::AssignError::Image { image: "depth", field: "size", .. }) => refused += 1,
+            other => panic!("{}: {other:?}", row.default_id()),
+        }
+    }
+    assert!(refused >= 13, "{refused} were refused");
+}

@@ -93,6 +93,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             cut: Some("windowed".to_owned()),
             light_order: Some("bvh".to_owned()),
             layers: None,
+            msaa: None,
             motion: None,
         },
         times: Times {

@@ -59,10 +59,7 @@ pub(super) const ROWS: &[Scenario] = &[
         negative_scale,
     ),
     Scenario {
-        why_not: Some(
-            "no target has several samples per pixel yet: the fence is drawn with one. Depth with several samples, of \
-             which bounds hold all, will show it.",
-        ),
+        options: &["--msaa", "4"],
         ..row(
             "msaa-depth",
             "With several depths per pixel, bounds from the first one lose the lights of the others.",

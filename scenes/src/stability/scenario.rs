@@ -26,9 +26,6 @@ pub struct Scenario {
     pub moves: &'static [Move],
     /// Options of the program without which the situation is not drawn, such as `--fog`.
     pub options: &'static [&'static str],
-    /// Why the renderer cannot draw the situation yet, and what that needs. The scene opens all the same, but
-    /// does not show the failure.
-    pub why_not: Option<&'static str>,
     /// Whether it takes too long for quick runs on a software adapter.
     pub heavy: bool,
     pub(super) make: fn(&mut Kit),
@@ -128,7 +125,6 @@ impl Scenario {
             figure: Figure::None,
             moves: &[],
             options: &[],
-            why_not: None,
             heavy: false,
             make,
         }

@@ -168,7 +168,8 @@ fn particle_pipeline(
     let mut shader =
         lighting_modules(LISTS_GROUP).flag("captures", lists.is_none()).flag("fogged", fogged);
     if let Some(Lists { lookup, options }) = lists {
-        shader = options.set_flags(shader).strategy(lookup.module).without_subgroups();
+        shader = options.set_flags(shader).strategy(lookup.module);
+        shader = shader.without_subgroups().looks_up_anywhere();
     }
     // SAFETY: its loops count up to the number of suns or vertices, or end with the strategy's look-up, which
     // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do, and the

@@ -117,7 +117,10 @@ fn fog_light(
     entries.push(FogVolume::grid_layout(stages));
     entries.push(written_volume_layout(SCATTERED_BINDING));
     let layout = gpu.bind_group_layout("fog-light", &entries);
-    let shader = options.set_flags(lighting_modules(LISTS_GROUP)).strategy(lookup.module);
+    let shader = options
+        .set_flags(lighting_modules(LISTS_GROUP))
+        .strategy(lookup.module)
+        .looks_up_anywhere();
     // SAFETY: its loops count up to the number of suns or vertices, or end with the strategy's look-up, which
     // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do, and the
     // strategy's author guarantees it of its own.

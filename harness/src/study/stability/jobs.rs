@@ -73,11 +73,18 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         (None, ..) => extent.size,
     };
     let frames = extent.frames.to_string();
+    // Only forward modes draw several samples per pixel, and only images are checked then.
+    let is_multisampled = scenario.options.contains(&"--msaa");
+    let truth = if is_multisampled { "none" } else { "full" };
     let job = |id: String, section: &str, variant: &str, options: &[&str]| {
         let Size { width, height } = size;
         let (size, seed) = (format!("{width}x{height}"), args.seed.to_string());
         // What is wrong with a list is wrong in every mode.
-        let mode = if section == FLAWED { "deferred" } else { "both" };
+        let mode = match section {
+            _ if is_multisampled => "forward",
+            FLAWED => "deferred",
+            _ => "both",
+        };
         let all = ["compare", "--scene", &id, "--size", &size, "--seed", &seed, "--mode", mode];
         let all =
             [&all[..], &["--warmup", "0", "--pictures", "differing"], scenario.options].concat();
@@ -93,7 +100,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         }
     };
     let of_all = ["--strategies", "all"];
-    let still = [&of_all[..], &["--truth", "full", "--frames", "1"]].concat();
+    let still = [&of_all[..], &["--truth", truth, "--frames", "1"]].concat();
     let mut jobs = vec![job(scenario.id(), STILL, "", &still)];
     for way in scenario.moves.iter().copied() {
         let options = [&of_all[..], &["--truth", "none"], &moved(Some(way))].concat();
@@ -121,7 +128,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
         let names: Vec<&str> = group.iter().map(|flaw| flaw.name).collect();
         let ids = ids.join(",");
         let options =
-            [&["--strategies", ids.as_str(), "--truth", "full"], group[0].options].concat();
+            [&["--strategies", ids.as_str(), "--truth", truth], group[0].options].concat();
         let mut options = [options, moved(way)].concat();
         if matches!(way, Some(Move::Lights(_))) {
             // The CPU must know the lights that a limit leaves out.

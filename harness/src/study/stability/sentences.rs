@@ -1,7 +1,6 @@
 //! What was found, in words.
 
 use super::cells::{Cell, Method, cell, flawed_methods, methods};
-use super::jobs::scenario_of;
 use super::outcome::Outcome;
 use crate::report::format::{number, short_adapter};
 use crate::report::rank::listed;
@@ -78,14 +77,6 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
             listed(&quiet)
         ));
     }
-    let undrawn = done.scenes().into_iter().filter_map(scenario_of);
-    notices.extend(undrawn.filter_map(|scenario| {
-        Some(format!(
-            "{} does not show its failure: {}.",
-            scenario.name,
-            scenario.why_not?.trim_end_matches('.')
-        ))
-    }));
     notices
 }
 
