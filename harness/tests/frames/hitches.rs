@@ -2,7 +2,7 @@
 
 use assign::{
     EncoderPasses, Frame, Gpu, Hitches, Light, LightBuffer, LightKinds, LightOrder, LightTraits,
-    ModelBox, View,
+    ModelBox, SampleDomain, View,
 };
 use glam::{Mat4, Vec3};
 use harness::strategy::Row;
@@ -14,17 +14,30 @@ const SIZE: [u32; 2] = [64, 48];
 const WARM_UP: u32 = 25;
 const FRAMES: u32 = 100;
 
+/// What the depth images of a frame hold.
+#[derive(Clone, Copy, Debug)]
+enum Depths {
+    OneSample,
+    SeveralSamples,
+    Layers,
+}
+
 /// Images of the surfaces. Nothing is drawn to them, for it does not matter where surfaces are.
-struct Images([wgpu::TextureView; 3]);
+struct Images {
+    /// Depth, normals and base colours.
+    surfaces: [wgpu::TextureView; 3],
+    several_samples: wgpu::TextureView,
+    layers: [wgpu::TextureView; 2],
+}
 
 impl Images {
     fn new(gpu: &Gpu) -> Self {
-        let image = |format| {
+        let image = |format, sample_count| {
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
                 mip_level_count: 1,
-                sample_count: 1,
+                sample_count,
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::TEXTURE_BINDING
@@ -34,7 +47,11 @@ impl Images {
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
         use wgpu::TextureFormat::{Depth32Float, Rgba8Unorm, Rgba16Float};
-        Self([Depth32Float, Rgba16Float, Rgba8Unorm].map(image))
+        Self {
+            surfaces: [Depth32Float, Rgba16Float, Rgba8Unorm].map(|format| image(format, 1)),
+            several_samples: image(Depth32Float, 4),
+            layers: [0, 1].map(|_| image(Depth32Float, 1)),
+        }
     }
 
     fn frame<'a>(
@@ -42,14 +59,22 @@ impl Images {
         view: &'a View,
         lights: &'a LightBuffer,
         models: &'a [ModelBox],
+        (depths, layers): (Depths, &'a [&'a wgpu::TextureView]),
     ) -> Frame<'a> {
-        let Self([depth, normals, base_color]) = self;
-        Frame::new(view, lights)
+        let [depth, normals, base_color] = &self.surfaces;
+        let frame = Frame::new(view, lights)
             .with_depth(depth)
             .with_normals(normals)
             .with_base_color(base_color)
             .with_models(models)
-            .with_surface_bounds(Vec3::splat(-50.0), Vec3::splat(50.0))
+            .with_surface_bounds(Vec3::splat(-50.0), Vec3::splat(50.0));
+        match depths {
+            Depths::OneSample => frame,
+            Depths::SeveralSamples => {
+                frame.with_depth(&self.several_samples).sampled_at(SampleDomain::NearSurfaces)
+            }
+            Depths::Layers => frame.with_layer_depths(layers).sampled_at(SampleDomain::InFront),
+        }
     }
 }
 
@@ -57,6 +82,7 @@ impl Images {
 struct Living {
     gpu: Gpu,
     images: Images,
+    depths: Depths,
     given: Vec<Light>,
     buffer: LightBuffer,
     views: Vec<View>,
@@ -70,6 +96,7 @@ impl Living {
         Self {
             gpu: gpu.clone(),
             images: Images::new(gpu),
+            depths: Depths::OneSample,
             given: lights(&scene, 60),
             buffer: LightBuffer::ordered(gpu, &[], order).expect("lights"),
             views: (0..WARM_UP).map(|i| view(&scene, 1e-3 * i as f32, SIZE)).collect(),
@@ -90,7 +117,9 @@ impl Living {
         }
         self.buffer.update(&self.gpu, &moved).expect("updates");
         let view = &self.views[(number % WARM_UP) as usize];
-        let frame = self.images.frame(view, &self.buffer, &self.models);
+        let layers = self.images.layers.each_ref();
+        let depths = (self.depths, &layers[..]);
+        let frame = self.images.frame(view, &self.buffer, &self.models, depths);
         contender.strategy.prepare(&self.gpu, &frame).expect("prepares");
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -169,7 +198,34 @@ fn a_new_view_of_the_depth_buffer_in_each_frame_is_found() {
     living.draw(&mut contender, 0, true);
     living.draw(&mut contender, 1, true);
     assert_eq!(living.draw(&mut contender, 2, true), Hitches::default());
-    let texture = living.images.0[0].texture().clone();
-    living.images.0[0] = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let texture = living.images.surfaces[0].texture().clone();
+    living.images.surfaces[0] = texture.create_view(&wgpu::TextureViewDescriptor::default());
     assert_eq!(living.draw(&mut contender, 3, true).bind_groups, 1);
+}
+
+/// A renderer may alternate between frames with several samples per pixel and frames with glass.
+#[test]
+fn kernels_and_bind_groups_of_all_kinds_of_depth_stay() {
+    let gpu = Gpu::open(None).expect("an adapter");
+    for id in ["SC-E", "DC-E", "DA-E", "HC", "T-E", "G/8x8x8/visible"] {
+        let id = harness::strategy::row(id).map_or(id.to_owned(), Row::default_id);
+        let mut contender = contender(&gpu, &id).expect("a strategy");
+        let mut living = Living::new(&gpu, LightOrder::Given);
+        let mut number = 0;
+        let mut draw_all = |living: &mut Living| {
+            [Depths::OneSample, Depths::SeveralSamples, Depths::Layers].map(|depths| {
+                living.depths = depths;
+                number += 1;
+                living.draw(&mut contender, number, true)
+            })
+        };
+        let made = draw_all(&mut living);
+        assert!(made[1].bind_groups > 0, "{id} binds another depth buffer: {made:?}");
+        for _ in 0..WARM_UP {
+            draw_all(&mut living);
+        }
+        for _ in 0..4 {
+            assert_eq!(draw_all(&mut living), [Hitches::default(); 3], "{id}");
+        }
+    }
 }
