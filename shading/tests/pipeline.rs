@@ -146,7 +146,11 @@ fn the_check_accepts_full_lists_and_finds_a_dropped_light() {
     let lights = LightBuffer::new(&gpu, &common::lights(30)).unwrap();
     let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
     let mut strategy = Everything::new(&gpu).unwrap();
-    strategy.prepare(&gpu, &assign::Frame::new(&view, &lights)).unwrap();
+    let frame = assign::Frame::new(&view, &lights);
+    strategy.prepare(&gpu, &frame).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    strategy.record(&frame, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
     let mut lists = strategy.lists().snapshot(&gpu).unwrap();
     let bvh = LightBvh::new(lights.lights());
     let truth = bvh.check(&samples, &lists, false);

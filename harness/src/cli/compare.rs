@@ -62,9 +62,6 @@ pub struct CompareArgs {
     pub layers: LayerArgs,
 
     /// Samples per pixel, 1 or 4; 4 needs --mode forward and --truth none
-    ///
-    /// Each fragment is shaded once, at the pixel's centre. The image is the mean of the samples. Lists are not checked
-    /// on the CPU.
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 4), help_heading = SHADING, hide_short_help = true)]
     pub msaa: u32,
 
