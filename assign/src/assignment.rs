@@ -18,7 +18,9 @@ use crate::{
 /// camera, the other half of a split screen, a reflection. Both share pipelines and layouts, so one shading pipeline
 /// serves both, and both may be prepared and recorded in one submission. An instance that is prepared for another view
 /// in each frame is right too, but its lists are overwritten: shade a view before the next one is recorded. A strategy
-/// that keeps lists over frames, such as [`Keep`](crate::Keep), keeps them for one view.
+/// that keeps lists over frames, such as [`Keep`](crate::Keep), keeps them for one view. Wrappers that change lights
+/// ([`Fewer`](crate::Fewer), [`Half`](crate::Half), [`Stochastic`](crate::Stochastic)) upload their copy through the
+/// queue: give each view an instance.
 ///
 /// # No hitch
 ///
