@@ -194,9 +194,11 @@ pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, Ha
 pub(crate) fn served(
     choices: Vec<Choice>,
     gpu: &Gpu,
-    stage: &Stage,
+    stage: &mut Stage,
     cut: Cut,
 ) -> Result<(Vec<Choice>, Vec<RefusedStrategy>), HarnessError> {
+    // Images of the view's size.
+    stage.renderer.prepare(&stage.view, &stage.lights)?;
     let mut served = Vec::new();
     let mut left_out = Vec::new();
     for choice in choices {

@@ -34,6 +34,7 @@ mod plug_in;
 mod refusal;
 mod row;
 mod rows;
+mod segments;
 mod specular;
 mod table;
 

@@ -65,7 +65,8 @@ mod tests {
             let of_scenario = layers_of(&scenario.id());
             assert!(of_scenario.is_some(), "{}: {:?}", scenario.name, scenario.options);
             let is_plain = of_scenario == Some(LayerArgs::default());
-            let is_layer = |option: &&str| ["--transparent", "--particles", "--fog"].contains(option);
+            let is_layer =
+                |option: &&str| ["--transparent", "--particles", "--fog"].contains(option);
             assert_eq!(is_plain, !scenario.options.iter().any(is_layer), "{}", scenario.name);
         }
         let fog = layers("lightbench --scene stability:fog").fog;

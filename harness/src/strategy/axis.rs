@@ -7,40 +7,11 @@ use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
 
+use super::segments::{
+    CAP, CASCADES, EVEN, HALF, KEEP, NEAR, NO_EXIT, NORMALS, PLAIN_DEPTH, RASTER, REACH, RECTANGLE,
+    REUSE, STOCHASTIC, TOUCHED, UNORDERED,
+};
 use super::{Options, specular};
-
-/// The segment of slices that are equally deep.
-const EVEN: &str = "even";
-/// The prefix of a segment that gives the first slice a depth of its own.
-const NEAR: &str = "near";
-/// The prefix of a segment that sets the number of cascades.
-const CASCADES: &str = "cascades";
-/// The prefix of a segment that sets the bins of normals.
-const NORMALS: &str = "n";
-/// The prefix of a segment that lists lights for their specular term beyond their range.
-const REACH: &str = "reach";
-/// The prefix of a segment that sets the most lights of a list.
-const CAP: &str = "cap";
-/// The prefix of a segment that makes ranges random below an irradiance.
-const STOCHASTIC: &str = "stochastic";
-/// The prefix of a segment that sets for how many frames lists are used.
-const REUSE: &str = "reuse";
-/// The prefix of a segment that sets for how many frames lists of larger lights are kept.
-const KEEP: &str = "keep";
-/// The segment that makes only those lists again that a changed light touches.
-const TOUCHED: &str = "touched";
-/// The segment that lets the rasteriser add lights to cells.
-const RASTER: &str = "raster";
-/// The segment that turns the early exit off.
-const NO_EXIT: &str = "no-exit";
-/// The segment that tests a wrong rectangle on the screen. A flaw.
-const RECTANGLE: &str = "rect";
-/// The segment that culls by positions and ranges in half precision. A flaw.
-const HALF: &str = "half";
-/// The segment that culls by view depths which ignore an oblique near plane. A flaw.
-const PLAIN_DEPTH: &str = "plain-depth";
-/// The segment that puts lists into a random order. A flaw.
-const UNORDERED: &str = "unordered";
 
 /// An axis besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
