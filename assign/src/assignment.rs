@@ -24,9 +24,17 @@ use crate::{
 ///
 /// # No hitch
 ///
-/// `prepare` and `record` never wait. They compile only for [kinds of lights](LightTraits) that have not come up yet
-/// ([`compile`](Self::compile) does that ahead), and make buffers and bind groups only if something grew or other images
-/// are bound. [`Gpu::hitches`] counts all of this.
+/// `prepare` and `record` never wait. They compile only in these cases:
+///
+/// - [Kinds of lights](LightTraits), or more levels of the hierarchy, have not come up yet. [`compile`](Self::compile)
+///   does that ahead. `kinds.into()` means one level. Where a hierarchy may grow past 16,384 lights, use
+///   `LightTraits { kinds, levels: 3 }`.
+/// - It is the first depth buffer with several samples per pixel. `prepare` compiles for it; `compile` does not.
+///
+/// If the GPU orders the lights, [`LightBuffer::compile`](crate::LightBuffer::compile) compiles ahead for the sort.
+///
+/// They make buffers and bind groups only if something grew or other images are bound. [`Gpu::hitches`] counts all of
+/// this.
 pub trait Assignment: Send + Sync {
     /// The strategy's id with its parameters, named as in the comparison paper: `DC-I/64x64x24`.
     fn id(&self) -> String;

@@ -82,7 +82,9 @@ pub struct Frame<'a> {
     /// (`texture_depth_2d`, `texture_depth_multisampled_2d`). A view of depth and stencil serves too.
     pub depth: Option<&'a wgpu::TextureView>,
     /// Depth of layers in front of the opaque surfaces, such as transparent ones: textures like `depth`, cleared to the
-    /// far end where a layer shows nothing. Lists then serve their samples too. Look-ups beyond them read all lights.
+    /// far end where a layer shows nothing. Clusters (`DC-E`, `SC-I` and `SC-E` without normals or reach), `HC` and
+    /// `GridBox::Visible` then list lights for their samples too. All other strategies ignore them and stay exact. A
+    /// look-up that no list serves reads all lights.
     pub layer_depths: &'a [&'a wgpu::TextureView],
     /// Unit shading normals in world space, with perceptual roughness in `w`: a `texture_2d<f32>`
     /// of half floats or better, as large as the target.
@@ -146,7 +148,8 @@ impl<'a> Frame<'a> {
         self
     }
 
-    /// Adds the depths of layers in front of the opaque surfaces.
+    /// Adds the depths of layers in front of the opaque surfaces. [`layer_depths`](Self::layer_depths) says which
+    /// strategies read them.
     #[must_use]
     pub fn with_layer_depths(mut self, layers: &'a [&'a wgpu::TextureView]) -> Self {
         self.layer_depths = layers;

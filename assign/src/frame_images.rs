@@ -138,7 +138,7 @@ impl<'a> Frame<'a> {
     ///
     /// As [`depth_image`](Self::depth_image).
     pub fn normal_image(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        self.color_image(strategy, "normals", self.normals)
+        self.color_image(strategy, "normals", self.normals, Formats::Signed)
     }
 
     /// The base colours. `strategy` is the id of what reads them.
@@ -147,7 +147,7 @@ impl<'a> Frame<'a> {
     ///
     /// As [`depth_image`](Self::depth_image).
     pub fn base_color_image(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
-        self.color_image(strategy, "base colours", self.base_color)
+        self.color_image(strategy, "base colours", self.base_color, Formats::Colors)
     }
 
     fn color_image(
@@ -155,6 +155,7 @@ impl<'a> Frame<'a> {
         strategy: &str,
         image: &'static str,
         view: Option<&'a wgpu::TextureView>,
+        formats: Formats,
     ) -> Result<&'a wgpu::TextureView, AssignError> {
         let view = view.ok_or_else(|| missing(strategy, image))?;
         let check = ImageCheck { strategy, image, view: self.view, texture: view.texture() };
@@ -164,15 +165,43 @@ impl<'a> Frame<'a> {
             return check.fail("sample count", samples.to_string(), "1".into());
         }
         let format = check.texture.format();
-        match format.sample_type(None, None) {
-            Some(wgpu::TextureSampleType::Float { .. }) => Ok(view),
-            _ => check.fail("format", format!("{format:?}"), "a format of floats".into()),
+        match formats.accepts(format) {
+            true => Ok(view),
+            false => check.fail("format", format!("{format:?}"), formats.accepted().into()),
         }
     }
 }
 
 fn missing(strategy: &str, missing: &'static str) -> AssignError {
     AssignError::Missing { strategy: strategy.into(), missing }
+}
+
+/// What an image must be able to hold.
+#[derive(Clone, Copy)]
+enum Formats {
+    /// Three signed components and one more, to 11 bits at least: unit vectors.
+    Signed,
+    /// Four components from 0 to 1.
+    Colors,
+}
+
+impl Formats {
+    fn accepts(self, format: wgpu::TextureFormat) -> bool {
+        use wgpu::TextureFormat::{Rgba16Float, Rgba16Snorm, Rgba32Float};
+        let is_float =
+            matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+        match self {
+            Self::Signed => matches!(format, Rgba16Float | Rgba16Snorm | Rgba32Float),
+            Self::Colors => is_float && format.components() == 4,
+        }
+    }
+
+    fn accepted(self) -> &'static str {
+        match self {
+            Self::Signed => "Rgba16Float, Rgba32Float or Rgba16Snorm",
+            Self::Colors => "a format of four floats",
+        }
+    }
 }
 
 /// Checks one image of a frame.
@@ -206,6 +235,14 @@ impl ImageCheck<'_> {
         if has.width < ends[0] || has.height < ends[1] {
             let accepted = format!("at least {}x{}, where the viewport ends", ends[0], ends[1]);
             return self.fail("size", format!("{}x{}", has.width, has.height), accepted);
+        }
+        // Nobody can ask a view which level or layers it shows.
+        let single = [
+            ("mip levels", texture.mip_level_count()),
+            ("array layers", texture.depth_or_array_layers()),
+        ];
+        if let Some((field, count)) = single.into_iter().find(|(_, count)| *count != 1) {
+            return self.fail(field, count.to_string(), "1".into());
         }
         if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
             let accepted = "one with TEXTURE_BINDING".into();

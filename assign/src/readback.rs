@@ -94,11 +94,15 @@ impl<T: Pod> Readback<T> {
             }
             if state == MAPPED {
                 self.counted.add_map(buffer.size());
-                let is_newer = self.latest.as_ref().is_none_or(|(newest, _)| *newest < *number);
-                if is_newer && let Ok(view) = buffer.get_mapped_range(..) {
-                    self.latest = Some((*number, bytemuck::pod_read_unaligned(&view)));
+                // A lost device has destroyed the buffer, and refuses to unmap it.
+                if let Ok(view) = buffer.get_mapped_range(..) {
+                    let is_newer = self.latest.as_ref().is_none_or(|(newest, _)| *newest < *number);
+                    if is_newer {
+                        self.latest = Some((*number, bytemuck::pod_read_unaligned(&view)));
+                    }
+                    drop(view);
+                    buffer.unmap();
                 }
-                buffer.unmap();
             }
             *copy = None;
         }

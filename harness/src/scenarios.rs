@@ -31,7 +31,11 @@ fn row(scenario: &Scenario) -> String {
         note(format!("moves: {}", moves.join(", ")));
     }
     if !scenario.options.is_empty() {
-        note(format!("adds {}", scenario.options.join(" ")));
+        let options = scenario.options.join(" ");
+        note(match scenario.options.contains(&"--msaa") {
+            true => format!("needs {options} --mode forward --truth none"),
+            false => format!("adds {options}"),
+        });
     }
     text
 }

@@ -3,8 +3,8 @@
 //! The README beside this file says what each step does. Nothing here is compiled by lightbench's own tests.
 
 use assign::{
-    Assignment, Bounds, CullSettings, DepthMapping, EncoderPasses, Frame, FrameBindings, Gpu,
-    Light, LightBuffer, Projection, View, Viewport,
+    Assignment, Bounds, CullSettings, EncoderPasses, Frame, FrameBindings, Gpu, Light,
+    LightBuffer, View, ViewError, Viewport,
 };
 use assign_clustered::{Clustered, Occupancy};
 use bevy::{
@@ -39,9 +39,9 @@ impl Plugin for ClustersPlugin {
 pub struct Clusters {
     gpu: Gpu,
     lights: LightBuffer,
-    /// Bind group 0 of look-ups: the view and the lights.
+    /// The view and the lights. A material's bind group takes its `bind_entries`.
     pub bindings: FrameBindings,
-    /// Its `lookup` and `bind_group` are what a material's shader reads.
+    /// Its `lookup` gives the text for a material's shader, and the entries of its bind group.
     pub strategy: Clustered,
 }
 
@@ -76,7 +76,7 @@ fn prepare(
     let Some(depth) = textures.depth_only_view() else { return Ok(()) };
     let Clusters { gpu, lights, bindings, strategy } = &mut *clusters;
     lights.update(gpu, &points.iter().map(light).collect::<Vec<_>>())?;
-    let view = view(camera);
+    let view = view(camera)?;
     let frame = Frame::new(&view, lights).with_depth(depth);
     bindings.update(gpu, &frame)?;
     strategy.prepare(gpu, &frame)?;
@@ -92,25 +92,19 @@ fn record(
     let (camera, textures) = camera.into_inner();
     let Some(depth) = textures.depth_only_view() else { return };
     let Clusters { lights, strategy, .. } = &mut *clusters;
-    let view = view(camera);
+    let Ok(view) = view(camera) else { return };
     let frame = Frame::new(&view, lights).with_depth(depth);
     strategy.record(&frame, &mut EncoderPasses { encoder: context.command_encoder() });
 }
 
-/// The camera: bevy's perspective projection is reversed and infinite.
-fn view(camera: &ExtractedView) -> View {
-    let clip = camera.clip_from_view;
-    let corner = Vec2::new(clip.x_axis.x, clip.y_axis.y).recip();
+/// The camera, from bevy's own matrices. `prepare` reports what is no view, and `record` skips it.
+fn view(camera: &ExtractedView) -> Result<View, ViewError> {
     let [x, y, width, height] = camera.viewport.to_array();
-    View {
-        world_to_view: camera.world_from_view.to_matrix().inverse(),
-        projection: Projection::Perspective { min: -corner, max: corner },
-        near_m: clip.w_axis.z,
-        far_m: None,
-        depth: DepthMapping::Reversed,
-        viewport: Viewport { x, y, width, height },
-        jitter: Vec2::ZERO,
-    }
+    View::from_matrices(
+        camera.world_from_view.to_matrix().inverse(),
+        camera.clip_from_view,
+        Viewport { x, y, width, height },
+    )
 }
 
 /// A point light. Intensities stay in bevy's unit, because the material's shader reads them.

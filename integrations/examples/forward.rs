@@ -72,6 +72,9 @@ fn all_lights(in: Vertex) -> @location(0) vec4f {
 const VIEW: u32 = 1;
 const LISTS: u32 = VIEW + 4;
 
+/// Strategies of a camera: for opaque surfaces and for glass.
+type Pair = [Box<dyn Assignment>; 2];
+
 /// The lights of one camera, for opaque surfaces or for glass.
 struct CameraLights {
     strategy: Box<dyn Assignment>,
@@ -260,7 +263,7 @@ impl Forward {
         format: wgpu::TextureFormat,
         depth: DepthMapping,
         camera_count: usize,
-        make: &dyn Fn(&Gpu) -> Result<[Box<dyn Assignment>; 2], AssignError>,
+        make: &dyn Fn(&Gpu) -> Result<Pair, AssignError>,
     ) -> Result<Self, AssignError> {
         let camera = || {
             let [opaque, glass] = make(gpu)?;

@@ -77,7 +77,7 @@ impl HdrImage {
         let mut difference = ImageDifference::default();
         let channels = self.pixels.iter().flatten().zip(reference.pixels.iter().flatten());
         for (ix, (&a, &b)) in channels.enumerate() {
-            if a.to_bits() == b.to_bits() && !a.is_nan() {
+            if a.to_bits() == b.to_bits() && a.is_finite() {
                 continue;
             }
             difference.differing_channels += 1;

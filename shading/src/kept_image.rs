@@ -269,12 +269,15 @@ mod tests {
             let read = HdrImage::read(&gpu, targets, viewport).expect("readable");
             kept.keep_again(targets).expect("fits");
             assert_eq!(kept.read().expect("readable"), read);
-            // The same bits that are no number in both.
+            // The same bits that are not finite in both.
             let mut texels = first.clone();
             texels[at(5, 5)][1] = f32::NAN;
+            texels[at(6, 5)][2] = f32::INFINITY;
             show(&gpu, targets, &texels);
             kept.keep_again(targets).expect("fits");
-            assert_eq!(kept.differing_channels(targets).expect("readable"), 1);
+            assert_eq!(kept.differing_channels(targets).expect("readable"), 2);
+            let both = kept.read().expect("readable");
+            assert_eq!(both.difference(&both).expect("as large").differing_channels, 2);
         }
     }
 }

@@ -50,7 +50,7 @@ impl Cameras {
     fn differences(&self) -> [u64; 2] {
         [0, 1].map(|i| {
             let shown = image(&self.renderers[i], &self.views[i]);
-            shown.difference(&self.truths[i]).expect("as large").differing_channels as u64
+            shown.difference(&self.truths[i]).expect("as large").differing_channels
         })
     }
 }

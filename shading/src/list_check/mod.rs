@@ -153,7 +153,7 @@ impl<'a> ListCheck<'a> {
         let found =
             (0..).zip(&self.known).find_map(|(ix, known)| Some((ix, known.places(samples)?)));
         let (ix, places) = found.unwrap_or_else(|| {
-            let remembered: usize = self.known.iter().map(|known| known.len()).sum();
+            let remembered: usize = self.known.iter().map(Reached::len).sum();
             if remembered + samples.pixels.len() > MOST_REMEMBERED {
                 self.known.clear();
             }

@@ -154,7 +154,7 @@ fn blocks_say_what_pairs_say_also_of_samples_that_were_seen_before() {
             assert_eq!(check.check(&samples, &lists, knows_normals), expected);
         }
         // Every third of them, from the middle on.
-        let some = |ix: &usize| *ix > 100 && ix % 3 == 0;
+        let some = |ix: &usize| *ix > 100 && ix.is_multiple_of(3);
         let ixs: Vec<usize> = (0..300).filter(some).collect();
         let part = Samples {
             positions: ixs.iter().map(|&ix| samples.positions[ix]).collect(),
