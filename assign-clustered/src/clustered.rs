@@ -58,10 +58,6 @@ impl Clustered {
             options,
             froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
             bins: gpu.uniform("normal bins", size_of::<NormalBinsUniform>() as u64),
-            gather: match reads_samples {
-                true => Some(Gather::new(gpu, &options)?),
-                false => None,
-            },
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
@@ -76,6 +72,11 @@ impl Clustered {
                     bindings: &bindings,
                 },
             )?,
+            // After the check of limits.
+            gather: match reads_samples {
+                true => Some(Gather::new(gpu, &options)?),
+                false => None,
+            },
         })
     }
 

@@ -40,10 +40,6 @@ impl Grid {
             grid_box,
             settings,
             cells: gpu.uniform("cells", size_of::<CellsUniform>() as u64),
-            visible: match grid_box {
-                GridBox::Visible => Some(VisibleBox::new(gpu)?),
-                _ => None,
-            },
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
@@ -58,6 +54,11 @@ impl Grid {
                     bindings: &bindings(),
                 },
             )?,
+            // After the check of limits.
+            visible: match grid_box {
+                GridBox::Visible => Some(VisibleBox::new(gpu)?),
+                _ => None,
+            },
         })
     }
 

@@ -38,7 +38,6 @@ impl HashedCells {
         Ok(Self {
             cell_px,
             settings,
-            table: HashTable::new(gpu, cell_px)?,
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
@@ -53,6 +52,8 @@ impl HashedCells {
                     bindings: &bindings(),
                 },
             )?,
+            // After the check of limits.
+            table: HashTable::new(gpu, cell_px)?,
         })
     }
 

@@ -34,16 +34,11 @@ impl Tiled {
     ) -> Result<Self, AssignError> {
         size.check()?;
         let depths = depths.into();
-        let tile_bounds = match depths {
-            TileDepths::Implicit | TileDepths::ExplicitAtOnce => None,
-            _ => Some(TileBounds::new(gpu, depths)?),
-        };
         Ok(Self {
             size,
             depths,
             settings,
             tiles: gpu.uniform("tiles", size_of::<TilesUniform>() as u64),
-            tile_bounds,
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
@@ -61,6 +56,11 @@ impl Tiled {
                     bindings: &bindings(depths),
                 },
             )?,
+            // After the check of limits.
+            tile_bounds: match depths {
+                TileDepths::Implicit | TileDepths::ExplicitAtOnce => None,
+                _ => Some(TileBounds::new(gpu, depths)?),
+            },
         })
     }
 }
@@ -95,7 +95,7 @@ impl Tiled {
             return Ok(depth);
         }
         let reason = "no buffer keeps the bounds of its tiles, so look-ups cannot tell which samples they hold";
-        frame.check_domain(&id, &[SampleDomain::OpaqueSurfaces, SampleDomain::InFront], reason)?;
+        frame.check_domain(&id, &[SampleDomain::OpaqueSurfaces], reason)?;
         depth.with_one_sample("its culling kernel reads one sample per pixel")
     }
 }

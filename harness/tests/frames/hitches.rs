@@ -159,7 +159,7 @@ fn a_hundred_frames_of_moving_lights_and_camera_make_nothing_and_never_wait() {
 fn kinds_of_lights_are_compiled_once_and_ahead_if_asked() {
     let gpu = Gpu::open(None).expect("an adapter");
     let order = LightOrder::Gpu { every: 1 };
-    let ids = ["SC-E/bvh", "T-E", "G", "HG", "HG/raster", "SC-I/bvh/touched", "T-E/keep2"];
+    let ids = ["SC-E/bvh", "T-E", "G", "HG", "HG/raster", "SC-I/bvh/touched"];
     let default_id = |id: &str| harness::strategy::row(id).map_or(id.to_owned(), Row::default_id);
     let kinds = [false, true].map(|spots| LightKinds { spots, areas: false });
     for id in ids {

@@ -11,7 +11,7 @@ use assign_tiled::{TileDepths, Tiled};
 use assign_walk::Walk;
 use shading::Renderer;
 
-use crate::stage::{contenders, image, lighting, lights, record_frame, scene, truth, view};
+use crate::stage::{few, image, lighting, lights, record_frame, scene, truth, view};
 
 /// A device of the first adapter with some limits.
 fn device(limits: wgpu::Limits) -> Gpu {
@@ -43,7 +43,7 @@ fn strategies_fit_the_default_limits_of_webgpu() {
     renderer.prepare(&view, &lights).expect("prepares");
     let truth = truth(&renderer, &view, &lights);
     let mut fit = Vec::new();
-    for mut contender in contenders(&gpu) {
+    for mut contender in few(&gpu) {
         let id = harness::strategy::StrategyId::parse(&contender.id).expect("an id");
         if id.is_lossy(200) || id.has_flaw() {
             continue;

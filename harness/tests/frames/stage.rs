@@ -60,6 +60,31 @@ pub(crate) fn contenders(gpu: &Gpu) -> impl Iterator<Item = Contender> + '_ {
     ids.filter_map(|id| contender(gpu, &id))
 }
 
+/// One of each kind of kernels and look-ups, for tests that draw on a software adapter.
+const FEW: [&str; 16] = [
+    "SC-E/bvh",
+    "DA-E/bvh",
+    "M/2/bvh",
+    "T-25D/bvh",
+    "HC/bvh",
+    "T-E",
+    "DC-I",
+    "DC-E/mask",
+    "HG",
+    "HG/raster",
+    "ZB",
+    "G/visible",
+    "SC-E/n24",
+    "SC-I/bvh/touched",
+    "SC-E/keep4",
+    "W1",
+];
+
+/// The strategies that tests draw.
+pub(crate) fn few(gpu: &Gpu) -> impl Iterator<Item = Contender> + '_ {
+    FEW.into_iter().filter_map(|id| contender(gpu, id))
+}
+
 pub(crate) fn scene() -> Scene {
     atrium(1)
 }

@@ -3,9 +3,7 @@
 use assign::{Gpu, Hitches, LightBuffer, LightKinds, View};
 use shading::{HdrImage, Renderer};
 
-use crate::stage::{
-    Contender, contenders, image, lighting, lights, record_frame, scene, truth, view,
-};
+use crate::stage::{Contender, few, image, lighting, lights, record_frame, scene, truth, view};
 
 /// Two cameras in one scene.
 struct Cameras {
@@ -66,7 +64,7 @@ fn two_instances_in_one_submission_are_exact_and_compile_once() {
     let gpu = Gpu::open(None).expect("an adapter");
     let cameras = Cameras::new(&gpu);
     let mut tested = 0;
-    for first in contenders(&gpu).filter(is_lossless) {
+    for first in few(&gpu).filter(is_lossless) {
         let id = first.id.clone();
         let early_exit = first.early_exit;
         let mut both = vec![first];
@@ -86,7 +84,7 @@ fn two_instances_in_one_submission_are_exact_and_compile_once() {
         assert_eq!((pipelines, modules), (0, 0), "{id} compiled for the second view");
         tested += 1;
     }
-    assert!(tested > 25, "{tested} strategies");
+    assert!(tested > 12, "{tested} strategies");
 }
 
 /// Parameters reach the GPU in the order of commands. If they went through the queue, the first view would be drawn
@@ -95,7 +93,7 @@ fn two_instances_in_one_submission_are_exact_and_compile_once() {
 fn one_instance_prepared_twice_before_a_submission_is_exact() {
     let gpu = Gpu::open(None).expect("an adapter");
     let cameras = Cameras::new(&gpu);
-    for contender in contenders(&gpu).filter(is_lossless) {
+    for contender in few(&gpu).filter(is_lossless) {
         let id = contender.id.clone();
         let mut one = [contender];
         for frame in 0..3 {
