@@ -107,7 +107,7 @@ impl Fault {
             Self::Record0 => ("33-lights", Breach::Record0),
             Self::SilentOverflow => ("overflow", Breach::Counters),
             Self::StarvedPool => ("overflow", Breach::OverflowStays),
-            Self::Unrecorded => ("33-lights", Breach::Unwritten),
+            Self::Unrecorded => ("33-lights", Breach::Record0),
             Self::LostGroup => ("33-lights", Breach::NoSuchGroup),
             Self::StaleBinding => ("light-count-changes", Breach::Lookup),
             Self::CopiedSlot => ("lights-from-gpu", Breach::Slots),
