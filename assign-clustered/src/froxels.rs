@@ -2,10 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use assign::{
-    AssignError, FIRST_STRATEGY_BINDING, Frame, Projection, SampleDomain, View,
-    intersect::UNBOUNDED,
-};
+use assign::{AssignError, FIRST_STRATEGY_BINDING, Frame, Projection, View, intersect::UNBOUNDED};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -176,24 +173,15 @@ impl FroxelsUniform {
         })
     }
 
-    /// Extends the ends of the view to all samples of a frame: fragments of several samples per pixel may lie in front
-    /// of the near plane, but not behind the eye. `strategy` is the strategy's id.
+    /// Extends the ends of the view to all samples of a frame. `strategy` is the strategy's id.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Unsupported`] for such fragments in an orthographic view, which may lie at any depth.
+    /// Those of [`Frame::extends_past_planes`].
     pub(crate) fn serve(&mut self, frame: &Frame<'_>, strategy: &str) -> Result<(), AssignError> {
-        if frame.samples != SampleDomain::NearSurfaces {
-            return Ok(());
+        if frame.extends_past_planes(strategy)? {
+            (self.near_m, self.far_m) = (0.0, UNBOUNDED);
         }
-        if matches!(frame.view.projection, Projection::Orthographic { .. }) {
-            return Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: "fragments of several samples per pixel in an orthographic view".into(),
-                reason: "they may lie behind the eye, where its groups end".into(),
-            });
-        }
-        (self.near_m, self.far_m) = (0.0, UNBOUNDED);
         Ok(())
     }
 

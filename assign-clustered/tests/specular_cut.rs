@@ -7,7 +7,7 @@
 use assign::{
     Assignment, Bounds, CullSettings, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Emitter,
     EncoderPasses, Frame, Gpu, Light, LightBuffer, LightShape, View,
-    conformance::flat_depth,
+    conformance::{flat_depth, flat_half_floats},
     intersect::{Aabb, Gloss, LightVolume, MirrorGroup, NormalCone, SeenGroup},
 };
 use assign_clustered::{
@@ -39,25 +39,7 @@ fn wall(view: &View) -> Aabb {
 /// An image of one colour in half floats. Components must be 0 or 1.
 fn flat(gpu: &Gpu, texel: [f32; 4]) -> wgpu::TextureView {
     let bits = texel.map(|x| if x == 0.0 { 0_u16 } else { 0x3c00 });
-    let size = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let texels = vec![bits; (SIZE[0] * SIZE[1]) as usize];
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(8 * SIZE[0]),
-        rows_per_image: None,
-    };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
-    texture.create_view(&Default::default())
+    flat_half_floats(gpu, SIZE, bits)
 }
 
 /// For each light, the flags with which any group lists it.

@@ -6,7 +6,7 @@
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR,
     EncoderPasses, Frame, Gpu, Light, LightBuffer, LightShape, LightSource, Storage, Touched, View,
-    conformance::{self, faulty::Fault, flat_depth},
+    conformance::{self, faulty::Fault, flat_depth, flat_half_floats},
 };
 use assign_clustered::{ClusterOptions, Clustered, Normals, Occupancy, Slices, SpecularCut};
 use glam::Vec3;
@@ -42,25 +42,7 @@ fn clusters_with_a_reach_conform() {
 
 /// An image of one colour in half floats.
 fn flat(gpu: &Gpu, texel: [u16; 4]) -> wgpu::TextureView {
-    let size = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let texels = vec![texel; (SIZE[0] * SIZE[1]) as usize];
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(8 * SIZE[0]),
-        rows_per_image: None,
-    };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
-    texture.create_view(&Default::default())
+    flat_half_floats(gpu, SIZE, texel)
 }
 
 /// Bits of half floats.

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     AssignError, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges, LightOrder,
-    ModelBox, View, ViewUniform,
+    ModelBox, Projection, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
     plain_wgsl::FRAME_BINDINGS,
 };
@@ -204,6 +204,26 @@ impl<'a> Frame<'a> {
             asked: self.samples.words().into(),
             reason: reason.into(),
         })
+    }
+
+    /// Whether samples may lie beyond the ends of the view: fragments of several samples per pixel may lie in front of the
+    /// near plane, but not behind the eye. `strategy` is the id of what extends its groups from depth 0 to infinity.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] for such fragments in an orthographic view, which may lie at any depth.
+    pub fn extends_past_planes(&self, strategy: &str) -> Result<bool, AssignError> {
+        if self.samples != SampleDomain::NearSurfaces {
+            return Ok(false);
+        }
+        if matches!(self.view.projection, Projection::Orthographic { .. }) {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: "fragments of several samples per pixel in an orthographic view".into(),
+                reason: "they may lie behind the eye, where its groups end".into(),
+            });
+        }
+        Ok(true)
     }
 
     /// The lights, if the CPU knows them all and their order is that of the slots. `strategy` is the id of what asks, and
