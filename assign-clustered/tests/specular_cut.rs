@@ -67,6 +67,10 @@ fn flags(gpu: &Gpu, lights: &[Light], normals: Normals, cut: SpecularCut) -> Vec
     let lists = strategy.lists().snapshot(gpu).unwrap();
     let mut flags = vec![0; lights.len()];
     for group in 0..strategy.lists().group_count() {
+        // Groups without samples have the list of all lights.
+        if lists.lists[group as usize + 1] == lists.lists[0] {
+            continue;
+        }
         for entry in lists.entries_of(group).unwrap() {
             flags[(entry & ENTRY_LIGHT) as usize] |= entry & !ENTRY_LIGHT;
         }
