@@ -78,7 +78,7 @@ fn flags(
     let mut flags = vec![0; lights.len()];
     for group in 0..strategy.lists().group_count() {
         // Groups without samples have the list of all lights.
-        if lists.lists[group as usize + 1] == lists.lists[0] {
+        if lists.is_all_lights(group) {
             continue;
         }
         for entry in lists.entries_of(group).unwrap() {

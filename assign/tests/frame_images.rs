@@ -165,29 +165,41 @@ fn wrong_normals_and_colors_are_refused() {
     let gpu = Gpu::noop().unwrap();
     let right = texture(&gpu, &colors());
     ask(&gpu, |frame| frame.with_normals(&right).normal_image("X").map(|_| ())).unwrap();
+    let of_format = |format| wgpu::TextureDescriptor { format, ..colors() };
+    let signed = "it must be Rgba16Float, Rgba32Float or Rgba16Snorm";
+    let four = "it must be a format of four floats";
+    let both = |said: &str| [said.to_owned(), said.to_owned()];
+    let formats = |format: &str| [signed, four].map(|said| format!("format is {format}: {said}"));
     for (wrong, said) in [
         (
             wgpu::TextureDescriptor { size: size(64, 40), ..colors() },
-            "size is 64x40: it must be at least 64x48",
+            both("size is 64x40: it must be at least 64x48"),
         ),
         (
             wgpu::TextureDescriptor { sample_count: 4, ..colors() },
-            "sample count is 4: it must be 1",
+            both("sample count is 4: it must be 1"),
         ),
         (
-            wgpu::TextureDescriptor { format: wgpu::TextureFormat::R32Uint, ..colors() },
-            "format is R32Uint: it must be a format of floats",
+            wgpu::TextureDescriptor { mip_level_count: 2, ..colors() },
+            both("mip levels is 2: it must be 1"),
         ),
-        (depth_texture(), "format is Depth32Float: it must be a format of floats"),
+        (of_format(wgpu::TextureFormat::R32Uint), formats("R32Uint")),
+        (of_format(wgpu::TextureFormat::Rg16Float), formats("Rg16Float")),
+        (depth_texture(), formats("Depth32Float")),
     ] {
         let wrong = texture(&gpu, &wrong);
         let normals = |frame: Frame<'_>| Ok(frame.with_normals(&wrong).normal_image("X").err());
         let colors =
             |frame: Frame<'_>| Ok(frame.with_base_color(&wrong).base_color_image("X").err());
-        for (error, image) in [(ask(&gpu, normals), "normals"), (ask(&gpu, colors), "base colours")]
-        {
+        let asked = [(ask(&gpu, normals), "normals"), (ask(&gpu, colors), "base colours")];
+        for ((error, image), said) in asked.into_iter().zip(said) {
             let error = error.unwrap().unwrap().to_string();
-            assert!(error.contains(said) && error.contains(image), "{error}");
+            assert!(error.contains(&said) && error.contains(image), "{error}");
         }
     }
+    // Unit vectors have signs, base colours need none.
+    let unsigned = texture(&gpu, &of_format(wgpu::TextureFormat::Rgba8Unorm));
+    ask(&gpu, |frame| frame.with_base_color(&unsigned).base_color_image("X").map(|_| ())).unwrap();
+    let error = ask(&gpu, |frame| frame.with_normals(&unsigned).normal_image("X").map(|_| ()));
+    assert!(error.unwrap_err().to_string().contains(signed));
 }

@@ -4,7 +4,7 @@
 
 use assign::{
     CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightKinds, LightList, LightNode,
-    LightSource, LightSphere, ViewUniform,
+    LightSource, LightSphere, Shader, ViewUniform,
     conformance::{LinkedModule, StructLayout},
     struct_layout,
 };
@@ -60,7 +60,15 @@ fn light_node() {
 
 #[test]
 fn light_list() {
-    check_element("LightList", &struct_layout!(LightList: first, count));
+    let rust = struct_layout!(LightList: first, count);
+    assert_eq!(kernel().layout_of("LightList"), rust, "WESL, then Rust");
+    // Kernels write records word by word; look-ups read them as an array.
+    let root = "import package::lists::list_of;
+        @compute @workgroup_size(1) fn run() { _ = list_of(0u); }";
+    let look_up = Shader::new(1).module("package::root", root).link("package::root").unwrap();
+    let look_up = LinkedModule::new("a look-up", &look_up);
+    assert_eq!(look_up.layout_of("LightList"), rust, "WESL, then Rust");
+    assert_eq!(look_up.strides_of("LightList"), [rust.bytes], "array stride");
 }
 
 #[test]
