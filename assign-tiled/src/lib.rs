@@ -52,11 +52,11 @@
 //! - Smaller tiles do not help at a discontinuity. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!
-//! T-I serves look-ups at any depth, and T-E1 only opaque surfaces, because no buffer keeps its ranges. The others serve
-//! opaque surfaces and, if the renderer asks for it, what lies in front of them: transparent surfaces and particles.
-//! Their tiles then begin at the near plane, and end where they end otherwise. They also serve fragments of several
-//! samples per pixel: a look-up outside its tile's range reads all lights. They refuse look-ups at any depth, such as
-//! those of fog.
+//! T-I serves look-ups at any depth. The others serve opaque surfaces and, if the renderer asks for it, what lies in
+//! front of them: transparent surfaces and particles. Their tiles then begin at the near plane, and end where they
+//! end otherwise. They refuse look-ups at any depth, such as those of fog. All but T-E1 also serve fragments of several
+//! samples per pixel: a look-up outside its tile's range reads all lights. No buffer keeps the ranges of T-E1, so it
+//! serves only look-ups that lie inside them.
 
 mod tile_bounds;
 mod tile_wesl;

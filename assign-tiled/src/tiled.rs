@@ -95,7 +95,7 @@ impl Tiled {
             return Ok(depth);
         }
         let reason = "no buffer keeps the bounds of its tiles, so look-ups cannot tell which samples they hold";
-        frame.check_domain(&id, &[SampleDomain::OpaqueSurfaces], reason)?;
+        frame.check_domain(&id, &[SampleDomain::OpaqueSurfaces, SampleDomain::InFront], reason)?;
         depth.with_one_sample("its culling kernel reads one sample per pixel")
     }
 }

@@ -61,9 +61,13 @@ fn halves_and_slices_conform() {
 /// Tiles whose ranges begin at the near plane hold the lights of what lies in front of surfaces.
 #[test]
 fn explicit_tiles_conform_in_front_of_surfaces() {
-    for depths in
-        [TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ, TileDepths::Sliced]
-    {
+    for depths in [
+        TileDepths::Explicit,
+        TileDepths::ExplicitAtOnce,
+        TileDepths::HalfZ,
+        TileDepths::ModifiedHalfZ,
+        TileDepths::Sliced,
+    ] {
         let make = tiled(depths, "16x16", CullSettings::default());
         conformance::run_in_front(&make).expect("conforms");
     }

@@ -20,8 +20,8 @@ const PARTICLES_BINDING: u32 = 19;
 pub(super) enum Fragments<'a> {
     /// They light them, behind the fog if there is one.
     Light(&'a LightingInputs, Option<&'a FogVolume>),
-    /// They write them down.
-    Capture(&'a CaptureBuffers),
+    /// They write those down that no opaque surface hides; depths tell.
+    Capture(&'a CaptureBuffers, &'a wgpu::TextureView),
 }
 
 impl<'a> Fragments<'a> {
@@ -35,7 +35,11 @@ impl<'a> Fragments<'a> {
                     .chain(fog.into_iter().flatten())
                     .collect()
             }
-            Self::Capture(_) => CaptureBuffers::layout(stages).to_vec(),
+            Self::Capture(..) => {
+                let mut layout = CaptureBuffers::layout(stages).to_vec();
+                layout.push(CaptureBuffers::depth_layout(stages));
+                layout
+            }
         }
     }
 
@@ -45,7 +49,11 @@ impl<'a> Fragments<'a> {
             Self::Light(inputs, fog) => {
                 inputs.entries().chain(fog.into_iter().flat_map(FogVolume::entries)).collect()
             }
-            Self::Capture(buffers) => buffers.entries().to_vec(),
+            Self::Capture(buffers, depth) => {
+                let mut entries = buffers.entries().to_vec();
+                entries.push(CaptureBuffers::depth_entry(depth));
+                entries
+            }
         }
     }
 

@@ -22,7 +22,7 @@ const MOST_SAMPLES: u32 = 4 << 20;
 /// The samples at which a frame's layers look lights up.
 #[derive(Clone, Debug, Default)]
 pub struct LayerSamples {
-    /// Fragments of transparent surfaces and particles: how many there are, and the records of those that are kept.
+    /// Visible fragments of transparent surfaces and particles: how many there are, and the records of those that are kept.
     fragments: (u64, Vec<u8>),
     /// The same of froxels.
     froxels: (u64, Vec<u8>),
@@ -39,7 +39,7 @@ impl LayerSamples {
         let mut samples = Self::default();
         if layers.kinds().is_blended() {
             samples.fragments = captured(&renderer.gpu, |buffers, passes| {
-                let fragments = Fragments::Capture(buffers);
+                let fragments = Fragments::Capture(buffers, &renderer.targets.depth);
                 let blend = Blend::new(renderer, layers, None, fragments)?;
                 blend.record(renderer, layers, frame.view, (None, fragments), passes);
                 Ok(())

@@ -1,6 +1,6 @@
 //! The buffers to which passes write their samples, instead of lighting them.
 
-use assign::{AssignError, Gpu, entry, storage_entry};
+use assign::{AssignError, Gpu, entry, storage_entry, texture_entry};
 use bytemuck::cast_slice;
 
 use crate::probe::CAPTURED_BYTES;
@@ -8,6 +8,7 @@ use crate::probe::CAPTURED_BYTES;
 /// Bindings of `capture.wesl` in group 2.
 const KEPT_BINDING: u32 = 22;
 const COUNT_BINDING: u32 = 23;
+const DEPTH_BINDING: u32 = 24;
 
 /// What a pass writes its samples to.
 #[derive(Debug)]
@@ -34,5 +35,17 @@ impl CaptureBuffers {
 
     pub(super) fn entries(&self) -> [wgpu::BindGroupEntry<'_>; 2] {
         [entry(KEPT_BINDING, &self.kept), entry(COUNT_BINDING, &self.count)]
+    }
+
+    /// The depths of opaque surfaces, which hide fragments.
+    pub(super) fn depth_layout(stages: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+        texture_entry(DEPTH_BINDING, stages, wgpu::TextureSampleType::Depth)
+    }
+
+    pub(super) fn depth_entry(depth: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+        wgpu::BindGroupEntry {
+            binding: DEPTH_BINDING,
+            resource: wgpu::BindingResource::TextureView(depth),
+        }
     }
 }
