@@ -5,15 +5,6 @@ use glam::Vec3;
 use super::{Figure, Group, Move, Scenario, kit::Kit};
 use crate::Aabb;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Time, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
     Scenario {
@@ -93,12 +84,7 @@ fn camera_teleports(kit: &mut Kit) {
 fn every_light_moves(kit: &mut Kit) {
     kit.hall();
     kit.scatter(220, Kit::hall_box(), (0.5, 3.0));
-    for _ in 0..40 {
-        let place = kit.point_in(Kit::hall_box());
-        let (direction, outer) = (kit.direction(), kit.range(0.3, 1.0));
-        let spot = kit.spot(place, direction, (0.6 * outer, outer), 4.0);
-        kit.lights.push(spot);
-    }
+    kit.scatter_spots(40, Kit::hall_box(), (0.3, 1.0), 0.6);
 }
 
 /// Every pose is shown in two frames in a row.
