@@ -13,7 +13,7 @@ use crate::Aabb;
 pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::FalsePositives,
-        ..row(
+        ..Group::Geometry.row(
             1,
             "tile-corner-light",
             "Large balls that cross no plane of a tile's frustum and still miss it at a corner are listed by tests \
@@ -23,7 +23,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         figure: Figure::ListedOverContributing,
-        ..row(
+        ..Group::Geometry.row(
             2,
             "depth-discontinuity",
             "Between a fence and a far wall, a tile's depth range holds every light of the void.",

@@ -38,24 +38,34 @@ pub(super) const ROWS: &[Scenario] = &[
     }),
     Scenario {
         heavy: true,
-        ..row(13, "count-65537", "Light 65,536 is lost where indices have 16 bits.", |kit| {
-            count(kit, 65_536, (0.04, 0.25));
-            // The last light shows.
-            let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
-            kit.lights.push(light);
-        })
+        ..Group::LightData.row(
+            13,
+            "count-65537",
+            "Light 65,536 is lost where indices have 16 bits.",
+            |kit| {
+                count(kit, 65_536, (0.04, 0.25));
+                // The last light shows.
+                let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
+                kit.lights.push(light);
+            },
+        )
     },
     Scenario {
         heavy: true,
-        ..row(13, "count-1048577", "Light 2^20 is lost where indices have 20 bits.", |kit| {
-            count(kit, 1 << 20, (0.01, 0.1));
-            let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
-            kit.lights.push(light);
-        })
+        ..Group::LightData.row(
+            13,
+            "count-1048577",
+            "Light 2^20 is lost where indices have 20 bits.",
+            |kit| {
+                count(kit, 1 << 20, (0.01, 0.1));
+                let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
+                kit.lights.push(light);
+            },
+        )
     },
     Scenario {
         figure: Figure::ListedOverContributing,
-        ..row(
+        ..Group::LightData.row(
             14,
             "crowded-group",
             "2,000 lights in one group exceed every fixed list, and the pool of entries.",

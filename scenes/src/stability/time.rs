@@ -10,7 +10,7 @@ pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::TemporalError,
         moves: &[Move::Dolly, Move::Rotation],
-        ..row(
+        ..Group::Time.row(
             26,
             "sub-pixel-moves",
             "A light that is lost in some frames pops, although neither the camera nor the light moves by a pixel.",
@@ -19,7 +19,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         moves: &[Move::Teleport],
-        ..row(
+        ..Group::Time.row(
             27,
             "camera-teleports",
             "After a cut, lists and bounds of the last frame are those of another place.",
@@ -33,7 +33,7 @@ pub(super) const ROWS: &[Scenario] = &[
             Move::Lights("births"),
             Move::Lights("all"),
         ],
-        ..row(
+        ..Group::Time.row(
             27,
             "every-light-moves",
             "When every light moves in every frame, lists, hierarchies and orders of the last frame are stale.",
@@ -42,7 +42,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         moves: &[Move::Teleport],
-        ..row(
+        ..Group::Time.row(
             28,
             "same-frame-twice",
             "Lists in the order of atomics differ between two runs of one frame, and the last bits of the image too.",
@@ -52,7 +52,7 @@ pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::FrameTime,
         moves: &[Move::Teleport, Move::Rotation, Move::Lights("drift")],
-        ..row(
+        ..Group::Time.row(
             29,
             "uneven-load",
             "Frame times jump where the camera turns from an empty part to a crowded one.",

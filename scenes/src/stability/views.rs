@@ -28,7 +28,7 @@ pub(super) const ROWS: &[Scenario] = &[
     ),
     Scenario {
         moves: &[Move::Rotation],
-        ..row(
+        ..Group::Views.row(
             22,
             "sub-pixel-jitter",
             "Temporal anti-aliasing moves the window by parts of a pixel, which bounds made without it do not hold.",
@@ -84,7 +84,7 @@ pub(super) const ROWS: &[Scenario] = &[
     ),
     Scenario {
         options: &["--transparent"],
-        ..row(
+        ..Group::Views.row(
             25,
             "transparent-layers",
             "Glass is lit at depths that hold no opaque surface, for which explicit bounds and sparse lists hold \
@@ -94,7 +94,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         options: &["--particles", "150"],
-        ..row(
+        ..Group::Views.row(
             25,
             "particles",
             "Particles float where no opaque surface is, so lists made from the depth of surfaces lack their lights.",
@@ -103,7 +103,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         options: &["--fog", "0.05"],
-        ..row(
+        ..Group::Views.row(
             25,
             "fog",
             "Fog is lit in the whole depth of the view, in clusters and in tiles' voids that hold no surface.",
