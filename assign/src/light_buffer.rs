@@ -141,7 +141,9 @@ impl LightBuffer {
         }
         #[cfg(feature = "build-time")]
         let began = Instant::now();
-        given.reorder(&self.order.indices(&given.lights));
+        if self.order != LightOrder::Given {
+            given.reorder(&self.order.indices(&given.lights));
+        }
         let nodes = nodes(&given.lights);
         #[cfg(feature = "build-time")]
         let build_time = began.elapsed();

@@ -45,11 +45,15 @@ impl LightKinds {
 
     /// The kinds that occur among `lights`.
     pub fn among(lights: &[Light]) -> Self {
+        lights.iter().fold(Self::default(), Self::with)
+    }
+
+    /// These kinds and that of a light.
+    pub(crate) fn with(self, light: &Light) -> Self {
+        let is_cut = matches!(light.shape, LightShape::Spot { .. } | LightShape::Vpl { .. });
         Self {
-            spots: lights
-                .iter()
-                .any(|light| matches!(light.kind(), LightKind::Spot | LightKind::Vpl)),
-            areas: lights.iter().any(|light| matches!(light.shape, LightShape::Area(_))),
+            spots: self.spots || is_cut,
+            areas: self.areas || matches!(light.shape, LightShape::Area(_)),
         }
     }
 

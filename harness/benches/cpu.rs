@@ -50,7 +50,7 @@ fn moved(lights: &[Light]) -> [Vec<Light>; 2] {
 }
 
 /// `LightBuffer::update` and `Assignment::prepare` at 10,000 lights that all move. The device runs nothing, so the
-/// times are those of this workspace and of wgpu's checks.
+/// times are those of this workspace and of wgpu's checks. What the machine's own driver adds is in the last bench.
 fn frames(criterion: &mut Criterion) {
     let gpu = Gpu::noop().expect("a device");
     let bounds = atrium(1).bounds;
@@ -70,7 +70,18 @@ fn frames(criterion: &mut Criterion) {
             });
         });
     }
-    let buffer = LightBuffer::new(&gpu, &lights[0]).expect("lights");
+    for id in ["SC-E/48x48x40/bvh", "DC-E/64x64x40/mask", "T-E/28x28/bvh", "HG/48x48x40"] {
+        prepare(criterion, &gpu, &lights[0], id, "");
+    }
+    match Gpu::open(None) {
+        Ok(gpu) => prepare(criterion, &gpu, &lights[0], "SC-E/48x48x40/bvh", "/adapter"),
+        Err(error) => eprintln!("frame/prepare/…/adapter is left out: {error}"),
+    }
+}
+
+/// Times `Assignment::prepare` of a camera that moves. The device is idle when it begins.
+fn prepare(criterion: &mut Criterion, gpu: &Gpu, lights: &[Light], id: &str, device: &str) {
+    let buffer = LightBuffer::new(gpu, lights).expect("lights");
     let size = wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
     let depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -83,25 +94,24 @@ fn frames(criterion: &mut Criterion) {
         view_formats: &[],
     });
     let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
-    for id in ["SC-E/48x48x40/bvh", "DC-E/64x64x40/mask", "T-E/28x28/bvh", "HG/48x48x40"] {
-        let made = Choice::parse(id).expect("an id").make(&gpu).expect("a method");
-        let Method::Lists { mut strategy, .. } = made else { continue };
-        criterion.bench_function(&format!("frame/prepare/{id}/10000"), |bencher| {
-            bencher.iter_custom(|rounds| {
-                let mut time = Duration::ZERO;
-                for round in 0..rounds {
-                    let eye = Vec3::new(0.0, 1.0, 0.001 * (round % 100) as f32);
-                    let view = View::look_at(eye, Vec3::Y, 1.0, 0.1, [1920, 1080]);
-                    let frame = Frame::new(&view, &buffer).with_depth(&depth);
-                    let began = Instant::now();
-                    strategy.prepare(&gpu, &frame).expect("prepares");
-                    time += began.elapsed();
-                    submit(&gpu, |passes| strategy.record(&frame, passes));
-                }
-                time
-            });
+    let made = Choice::parse(id).expect("an id").make(gpu).expect("a method");
+    let Method::Lists { mut strategy, .. } = made else { return };
+    criterion.bench_function(&format!("frame/prepare/{id}/10000{device}"), |bencher| {
+        bencher.iter_custom(|rounds| {
+            let mut time = Duration::ZERO;
+            for round in 0..rounds {
+                let eye = Vec3::new(0.0, 1.0, 0.001 * (round % 100) as f32);
+                let view = View::look_at(eye, Vec3::Y, 1.0, 0.1, [1920, 1080]);
+                let frame = Frame::new(&view, &buffer).with_depth(&depth);
+                let began = Instant::now();
+                strategy.prepare(gpu, &frame).expect("prepares");
+                time += began.elapsed();
+                submit(gpu, |passes| strategy.record(&frame, passes));
+                gpu.wait().expect("a frame");
+            }
+            time
         });
-    }
+    });
 }
 
 /// Records a frame and submits it, which no time counts.

@@ -15,7 +15,7 @@ use assign::{
 use assign_clustered::{Clustered, Occupancy};
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
-use integrations::{DEPTH_FORMAT, Target, Vertex, lights_at, open_device, scene, split_screen};
+use integrations::{Draw, Shot, Target, lights_at, open_device, scene, split_screen};
 
 /// The renderer's own shader. Its `View` and `view` do not clash with those of the look-up.
 const SHADER: &str = "
@@ -90,7 +90,10 @@ impl CameraLights {
     /// What a material's shader needs to look lights up.
     fn wgsl(&self) -> Result<String, AssignError> {
         let slots = Slots { view: (0, VIEW), lists_group: 0, first_binding: LISTS, prefix: "lb_" };
-        self.strategy.lookup().wgsl(&slots)
+        match self.samples {
+            SampleDomain::OpaqueSurfaces => self.strategy.lookup().wgsl(&slots),
+            _ => self.strategy.lookup().wgsl_anywhere(&slots),
+        }
     }
 
     fn layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
@@ -183,68 +186,6 @@ impl Material {
     }
 }
 
-/// The fixed state of a pipeline.
-#[derive(Clone, Copy)]
-struct Draw {
-    depth: DepthMapping,
-    format: wgpu::TextureFormat,
-    is_glass: bool,
-}
-
-impl Draw {
-    /// A pipeline over vertices of position, normal and colour. Without a fragment shader, it draws depth.
-    fn pipeline(
-        self,
-        gpu: &Gpu,
-        module: &wgpu::ShaderModule,
-        group: &wgpu::BindGroupLayout,
-        fragment: Option<&str>,
-    ) -> wgpu::RenderPipeline {
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(group)],
-            immediate_size: 0,
-        });
-        let nearer = match self.depth {
-            DepthMapping::Standard => wgpu::CompareFunction::Less,
-            DepthMapping::Reversed => wgpu::CompareFunction::Greater,
-        };
-        let is_opaque = fragment.is_some() && !self.is_glass;
-        let targets = [Some(wgpu::ColorTargetState {
-            format: self.format,
-            blend: self.is_glass.then_some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: wgpu::ColorWrites::ALL,
-        })];
-        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: fragment,
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[Some(Vertex::LAYOUT)],
-            },
-            primitive: Default::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(fragment.is_none()),
-                depth_compare: Some(if is_opaque { wgpu::CompareFunction::Equal } else { nearer }),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: Default::default(),
-            fragment: fragment.map(|entry_point| wgpu::FragmentState {
-                module,
-                entry_point: Some(entry_point),
-                compilation_options: Default::default(),
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
-    }
-}
-
 /// The renderer.
 pub(crate) struct Forward {
     cameras: Vec<Camera>,
@@ -260,22 +201,26 @@ impl Forward {
     /// glass in front of them.
     pub(crate) fn new(
         gpu: &Gpu,
-        format: wgpu::TextureFormat,
-        depth: DepthMapping,
+        draw: Draw,
         camera_count: usize,
         make: &dyn Fn(&Gpu) -> Result<Pair, AssignError>,
     ) -> Result<Self, AssignError> {
+        // integration: begin
+        let surfaces = match draw.samples {
+            1 => SampleDomain::OpaqueSurfaces,
+            _ => SampleDomain::NearSurfaces,
+        };
+        // integration: end
         let camera = || {
             let [opaque, glass] = make(gpu)?;
             Ok(Camera {
                 uniform: gpu.uniform("camera", size_of::<CameraUniform>() as u64),
-                opaque: CameraLights::new(gpu, opaque, SampleDomain::OpaqueSurfaces),
+                opaque: CameraLights::new(gpu, opaque, surfaces),
                 glass: CameraLights::new(gpu, glass, SampleDomain::InFront),
             })
         };
         // All cameras share the pipelines of the first one.
         let first = camera()?;
-        let draw = Draw { depth, format, is_glass: false };
         let opaque = Material::new(gpu, &first.opaque, draw)?;
         let glass = Material::new(gpu, &first.glass, Draw { is_glass: true, ..draw })?;
         let more = (1..camera_count).map(|_| camera());
@@ -289,21 +234,21 @@ impl Forward {
         Ok(Self { cameras, vertices, opaque_vertices, all_vertices, opaque, glass })
     }
 
-    /// Draws all views in one submission, each with a camera of its own. With `own_loop`, every pixel loops over all
+    /// Draws all shots in one submission, each with a camera of its own. With `own_loop`, every pixel loops over all
     /// lights.
     pub(crate) fn draw(
         &mut self,
         gpu: &Gpu,
         target: &Target,
         lights: &LightBuffer,
-        views: &[View],
+        shots: &[Shot],
         own_loop: bool,
     ) -> Result<(), AssignError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut shown = Vec::new();
-        for (camera, view) in self.cameras.iter_mut().zip(views) {
+        for (camera, Shot { world_to_clip, view }) in self.cameras.iter_mut().zip(shots) {
             let uniform = CameraUniform {
-                world_to_clip: view.world_to_clip(),
+                world_to_clip: *world_to_clip,
                 light_count: lights.count(),
                 padding: [0; 3],
             };
@@ -318,7 +263,7 @@ impl Forward {
         }
 
         // The depth of opaque surfaces, which strategies may read.
-        let clear = views.first().map(View::depth_clear);
+        let clear = shots.first().map(|shot| shot.view.depth_clear());
         let mut pass = target.begin(&mut encoder, clear);
         for (viewport, opaque, _) in &shown {
             let opaque = (&self.opaque.depth, opaque, 0..self.opaque_vertices);
@@ -328,7 +273,7 @@ impl Forward {
 
         // integration: begin
         lights.record(&mut EncoderPasses { encoder: &mut encoder });
-        for (camera, view) in self.cameras.iter_mut().zip(views) {
+        for (camera, Shot { view, .. }) in self.cameras.iter_mut().zip(shots) {
             camera.opaque.record(view, lights, target, &mut encoder);
             camera.glass.record(view, lights, target, &mut encoder);
         }
@@ -380,8 +325,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ])
     };
     // integration: end
-    let mut renderer = Forward::new(&gpu, format, DepthMapping::Reversed, 2, &make)?;
-    let target = Target::new(&gpu, format, size);
+    let draw = Draw { format, samples: 1, depth: DepthMapping::Reversed, is_glass: false };
+    let mut renderer = Forward::new(&gpu, draw, 2, &make)?;
+    let target = Target::new(&gpu, format, size, draw.samples);
     let mut lights =
         LightBuffer::ordered(&gpu, &lights_at(0.0, 300), LightOrder::Gpu { every: 1 })?;
     for frame in 0..8 {

@@ -2,7 +2,7 @@
 
 use assign::{Light, View};
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 /// A corner of a triangle.
 #[repr(C)]
@@ -72,11 +72,27 @@ pub fn lights_at(time: f32, count: u32) -> Vec<Light> {
     (0..count).map(light).collect()
 }
 
+/// What a camera shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot {
+    /// World to clip space, with which the renderer draws.
+    pub world_to_clip: Mat4,
+    /// The same camera for light assignment.
+    pub view: View,
+}
+
+impl From<View> for Shot {
+    /// The renderer draws with the view's own matrix.
+    fn from(view: View) -> Self {
+        Self { world_to_clip: view.world_to_clip(), view }
+    }
+}
+
 /// Two cameras: the left and the right half of an image.
-pub fn split_screen(size: [u32; 2]) -> [View; 2] {
+pub fn split_screen(size: [u32; 2]) -> [Shot; 2] {
     let half = [size[0] / 2, size[1]];
     let look = |eye| View::look_at(eye, Vec3::new(0.0, 0.5, 0.0), 0.9, 0.1, half);
     let mut right = look(Vec3::new(-3.0, 7.0, 12.0));
     right.viewport.x = half[0];
-    [look(Vec3::new(9.0, 3.0, 11.0)), right]
+    [look(Vec3::new(9.0, 3.0, 11.0)), right].map(Shot::from)
 }

@@ -40,6 +40,7 @@ impl Given {
         let mut lights = Vec::with_capacity(all.len());
         let mut indices = Vec::with_capacity(all.len());
         let mut rejected = Vec::new();
+        let mut found = Found::default();
         for (index, light) in all.iter().enumerate() {
             let fault = light.check().err();
             // Where indices stay, a dark light is in nobody's way.
@@ -49,19 +50,22 @@ impl Given {
             }
             let is_kept = keeps_indices || fault.is_none();
             if is_kept {
+                if !keeps_indices {
+                    found.add(light);
+                }
                 lights.push(*light);
                 indices.push(index as u32);
             }
         }
         if keeps_indices {
             darken(&mut lights);
+            lights.iter().for_each(|light| found.add(light));
         }
-        let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        let support = |l: &Light| (l.position - l.radius_m(), l.position + l.radius_m());
+        let is_empty = lights.is_empty();
         Self {
-            kinds: LightKinds::among(&lights),
-            bounds: lights.iter().map(support).reduce(around),
-            position_bounds: lights.iter().map(|l| (l.position, l.position)).reduce(around),
+            kinds: found.kinds,
+            bounds: (!is_empty).then_some(found.bounds),
+            position_bounds: (!is_empty).then_some(found.position_bounds),
             lights,
             indices,
             rejected,
@@ -72,6 +76,31 @@ impl Given {
     pub(super) fn reorder(&mut self, order: &[u32]) {
         self.lights = order.iter().map(|&ix| self.lights[ix as usize]).collect();
         self.indices = order.iter().map(|&ix| self.indices[ix as usize]).collect();
+    }
+}
+
+/// What the lights have in common, found in one pass: 10,000 lights take 1.8 MB, which no pass reads for free.
+struct Found {
+    kinds: LightKinds,
+    bounds: (Vec3, Vec3),
+    position_bounds: (Vec3, Vec3),
+}
+
+impl Default for Found {
+    /// No lights.
+    fn default() -> Self {
+        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        Self { kinds: LightKinds::default(), bounds: none, position_bounds: none }
+    }
+}
+
+impl Found {
+    fn add(&mut self, light: &Light) {
+        let around = |a: (Vec3, Vec3), low: Vec3, high: Vec3| (a.0.min(low), a.1.max(high));
+        let (position, radius_m) = (light.position, light.radius_m());
+        self.kinds = self.kinds.with(light);
+        self.bounds = around(self.bounds, position - radius_m, position + radius_m);
+        self.position_bounds = around(self.position_bounds, position, position);
     }
 }
 
@@ -109,11 +138,9 @@ pub(crate) struct Records {
 impl Records {
     pub(crate) fn new(lights: &[Light]) -> Self {
         let mut shapes = Vec::new();
-        Self {
-            spheres: lights.iter().map(Light::sphere).collect(),
-            emissions: lights.iter().map(|light| light.emission(&mut shapes)).collect(),
-            shapes,
-        }
+        let records = lights.iter().map(|light| (light.sphere(), light.emission(&mut shapes)));
+        let (spheres, emissions) = records.unzip();
+        Self { spheres, emissions, shapes }
     }
 
     /// Spheres, emissions and shapes.
