@@ -145,26 +145,28 @@ impl<'a> Lookup<'a> {
     /// | `lb_fall_off(distance_2: f32, range_m: f32, least_2: f32) -> f32` | the fall-off that ends at the light's range; `least_2` is `lb_MIN_DISTANCE_2` |
     /// | `lb_view` | the view: [`ViewUniform`](crate::ViewUniform) |
     ///
-    /// For fewer kinds of lights, or for the subgroup operations of compute shaders, call
-    /// [`Shader::wgsl`](crate::Shader::wgsl).
+    /// Samples may lie anywhere that the frame's [`SampleDomain`](crate::SampleDomain) allows: a look-up that no list
+    /// serves reads all lights ([`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere)). Shaders of opaque
+    /// surfaces save that check with [`wgsl_at_surfaces`](Self::wgsl_at_surfaces). For fewer kinds of lights, or for the
+    /// subgroup operations of compute shaders, call [`Shader::wgsl`](crate::Shader::wgsl).
     ///
     /// # Errors
     ///
     /// [`AssignError::Parameter`] for a prefix that begins no name, and [`AssignError::Shader`] if two variables would have
     /// the same binding.
     pub fn wgsl(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
-        self.shader(slots).wgsl(slots)
+        self.shader(slots).looks_up_anywhere().wgsl(slots)
     }
 
-    /// As [`wgsl`](Self::wgsl), for look-ups at other samples than those in the depth buffer
-    /// ([`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere)). A module that holds both texts needs two
-    /// prefixes; the bindings may be the same.
+    /// As [`wgsl`](Self::wgsl), for samples of [`SampleDomain::OpaqueSurfaces`](crate::SampleDomain::OpaqueSurfaces)
+    /// only. It is faster: no look-up asks whether the list serves it. At any other sample, light may be missing. A module
+    /// that holds both texts needs two prefixes; the bindings may be the same.
     ///
     /// # Errors
     ///
     /// As [`wgsl`](Self::wgsl).
-    pub fn wgsl_anywhere(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
-        self.shader(slots).looks_up_anywhere().wgsl(slots)
+    pub fn wgsl_at_surfaces(&self, slots: &Slots<'_>) -> Result<String, AssignError> {
+        self.shader(slots).wgsl(slots)
     }
 
     /// The look-up for any shader stage and all kinds of lights.

@@ -59,7 +59,7 @@ fn every_look_up_validates_inside_a_renderer() {
         for (view, prefix) in [((0, 1), "lb_"), ((0, apart), "lb_"), ((3, 0), "clustered_lights_")]
         {
             let slots = Slots { view, lists_group: 0, first_binding: 5, prefix };
-            let text = lookup.wgsl(&slots).expect(id);
+            let text = lookup.wgsl_at_surfaces(&slots).expect(id);
             let module = LinkedModule::new(id, &text);
             let variables = module.module().global_variables.iter();
             let bound: Vec<(u32, u32)> = variables
@@ -73,7 +73,7 @@ fn every_look_up_validates_inside_a_renderer() {
             if prefix == "lb_" {
                 // Look-ups of opaque surfaces and of other samples in one module.
                 let anywhere = Slots { prefix: "glass_", ..slots };
-                let anywhere = lookup.wgsl_anywhere(&anywhere).expect(id);
+                let anywhere = lookup.wgsl(&anywhere).expect(id);
                 LinkedModule::new(id, &(text + RENDERER + &anywhere));
             }
             for kinds in LightKinds::ALL {

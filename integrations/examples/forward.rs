@@ -91,8 +91,8 @@ impl CameraLights {
     fn wgsl(&self) -> Result<String, AssignError> {
         let slots = Slots { view: (0, VIEW), lists_group: 0, first_binding: LISTS, prefix: "lb_" };
         match self.samples {
-            SampleDomain::OpaqueSurfaces => self.strategy.lookup().wgsl(&slots),
-            _ => self.strategy.lookup().wgsl_anywhere(&slots),
+            SampleDomain::OpaqueSurfaces => self.strategy.lookup().wgsl_at_surfaces(&slots),
+            _ => self.strategy.lookup().wgsl(&slots),
         }
     }
 

@@ -75,8 +75,8 @@ impl Clusters {
         let slots = Slots { view: (0, VIEW), lists_group: 0, first_binding: LISTS, prefix: "lb_" };
         let lookup = self.strategy.lookup();
         Ok(match self.samples {
-            SampleDomain::OpaqueSurfaces => lookup.wgsl(&slots)?,
-            _ => lookup.wgsl_anywhere(&slots)?,
+            SampleDomain::OpaqueSurfaces => lookup.wgsl_at_surfaces(&slots)?,
+            _ => lookup.wgsl(&slots)?,
         })
     }
 
