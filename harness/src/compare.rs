@@ -86,6 +86,7 @@ pub fn compare_on(
     stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.sample_pixels(args.msaa)?;
+    let fewer_maps = stage.cast_shadows(args.shadows)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
@@ -101,6 +102,7 @@ pub fn compare_on(
     run.follow_path();
     run.results.warnings.extend(left_out.iter().map(RefusedStrategy::words));
     run.results.refused.extend(left_out);
+    run.results.warnings.extend(fewer_maps);
     run.warn(&choices);
     remove_stale(&args.out)?;
     run.look()?;

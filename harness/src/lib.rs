@@ -40,6 +40,7 @@ pub mod report;
 pub mod results;
 pub mod scenarios;
 pub mod schedule;
+mod shadows;
 pub mod sight;
 pub mod soak;
 pub mod stage;

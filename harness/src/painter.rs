@@ -46,6 +46,7 @@ impl<'a> Painter<'a> {
                     stochastic: *stochastic,
                     specular_reach: stage.specular_reach,
                     suns: stage.suns,
+                    shadows: stage.shadows,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 let frame_ix = is_random.then_some(0);
@@ -161,6 +162,6 @@ fn record_lights(
 
 /// Light volumes.
 pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, HarnessError> {
-    let Stage { renderer, lights, area_model, suns, .. } = stage;
-    Ok(RasterSpheres::new(renderer, lights.kinds(), *area_model, cut, *suns)?)
+    let Stage { renderer, lights, area_model, suns, shadows, .. } = stage;
+    Ok(RasterSpheres::new(renderer, lights.kinds(), *area_model, cut, *suns, *shadows)?)
 }

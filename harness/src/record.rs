@@ -179,6 +179,7 @@ pub fn record(
             cut: Some(plan.cut.name().to_owned()),
             compensation: args.compensate,
             specular_reach: args.specular_reach,
+            shadows: stage.shadow_setting(),
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
             layers: layer_setting(&args.layers),

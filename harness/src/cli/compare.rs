@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use assign::{FrustumTests, LightSource, MAX_SPECULAR_REACH};
 use clap::{Args, ValueEnum};
-use shading::{AreaModel, Cut};
+use shading::{AreaModel, Cut, ShadowModel};
 
 use super::{
     headings::{BOUNCE, CHECKS, LISTS, SHADING, TIMING},
@@ -80,6 +80,14 @@ pub struct CompareArgs {
     /// Let specular terms reach up to N of their lights' ranges, 1 to 64, on polished surfaces
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with_all = ["compensate", "operations"])]
     pub specular_reach: Option<f64>,
+
+    /// How lights are shadowed
+    ///
+    /// With maps:N,PX each area light has shadow maps from N of its points, 1, 4, 9, 25, 81 or 289, with faces of PX
+    /// texels on a side, even, 32 to 4096; each other light has one map. pcfK compares K texels of a map, 1, 4, 9, 16
+    /// or 25. The maps are drawn once, so the lights must stand still.
+    #[arg(long, value_name = "none|maps:N,PX[,pcfK]", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
+    pub shadows: ShadowModel,
 
     /// Even out the brightness of virtual point lights: multiply each sample by N / (number of lights that
     /// light it)
