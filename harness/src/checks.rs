@@ -50,7 +50,8 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     check_reach(args.specular_reach, args.cut)?;
     check_shadows(args.shadows, &args.stage, &args.layers)?;
     if args.unbounded && args.shadows.is_on() {
-        let accepted = "none with --unbounded, whose lights have other ranges than those of the maps";
+        let accepted =
+            "none with --unbounded, whose lights have other ranges than those of the maps";
         return Err(CliError::out_of_range("--shadows", &args.shadows.to_string(), accepted));
     }
     if let Some(checks) = args.checks.filter(|_| is_still && !args.temporal) {

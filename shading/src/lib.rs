@@ -61,8 +61,8 @@ pub mod traced;
 mod truth;
 mod world_triangles;
 
-pub use before_lighting::record_before_lighting;
 pub use area_model::{ACCEPTED_AREA_MODELS, AreaModel, MAX_AREA_SAMPLES};
+pub use before_lighting::record_before_lighting;
 pub use contributions::{PixelLight, PixelSurface, light_pixel};
 pub use dump::{list_of_pixel, visit_lists};
 pub use error::ShadingError;

@@ -85,7 +85,9 @@ impl Lighting {
             return Err(AssignError::Parameter {
                 field: "shadow model".into(),
                 value: options.shadows.to_string(),
-                accepted: "none with transparent surfaces, particles and fog, which maps do not shade".into(),
+                accepted:
+                    "none with transparent surfaces, particles and fog, which maps do not shade"
+                        .into(),
             }
             .into());
         }

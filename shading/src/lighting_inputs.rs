@@ -158,7 +158,11 @@ impl LightingInputs {
         let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
         let shadows = bound.shadows.then(|| BoundMaps::layout(stages));
         let shadows = shadows.into_iter().flatten();
-        [uniform_entry(LIGHTING_BINDING, stages)].into_iter().chain(table).chain(suns).chain(shadows)
+        [uniform_entry(LIGHTING_BINDING, stages)]
+            .into_iter()
+            .chain(table)
+            .chain(suns)
+            .chain(shadows)
     }
 
     /// Bind group entries of group 2.

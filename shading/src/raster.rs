@@ -22,8 +22,11 @@ use crate::{
 pub(crate) enum RasterPass<'a> {
     /// Depth only.
     Depth,
-    /// Depth only, of both sides of all triangles: a face of a shadow map.
-    ShadowMap,
+    /// Depth only, of both sides of all triangles, moved away from the light: a face of a shadow map.
+    ShadowMap {
+        /// How far depth is moved, in greatest differences of depth between neighbouring texels.
+        slopes: f32,
+    },
     /// The G-buffer, drawn where the depth is equal.
     GBuffer {
         /// Whether it holds the index of the model.
@@ -60,14 +63,17 @@ impl RasterPass<'_> {
     /// Whether the pass tests for the nearest depth and writes it. Otherwise it draws where the
     /// depth is equal.
     fn writes_depth(self) -> bool {
-        matches!(self, Self::Depth | Self::ShadowMap | Self::Forward { has_depth: false, .. })
+        matches!(
+            self,
+            Self::Depth | Self::ShadowMap { .. } | Self::Forward { has_depth: false, .. }
+        )
     }
 
     /// Samples per pixel of its targets. Only forward modes draw several, and they need no G-buffer.
     fn samples(self, orientation: Orientation) -> u32 {
         match self {
             Self::Depth | Self::Forward { .. } | Self::Clay => orientation.samples,
-            Self::GBuffer { .. } | Self::ModelIds | Self::ShadowMap | Self::Sheets(_) => 1,
+            Self::GBuffer { .. } | Self::ModelIds | Self::ShadowMap { .. } | Self::Sheets(_) => 1,
         }
     }
 
@@ -84,8 +90,19 @@ impl RasterPass<'_> {
 
     /// The sides of triangles that are left out. Both sides block light.
     fn cull_mode(self, key: DrawKey) -> Option<wgpu::Face> {
-        let is_culled = !key.material.double_sided && !matches!(self, Self::ShadowMap);
+        let is_culled = !key.material.double_sided && !matches!(self, Self::ShadowMap { .. });
         is_culled.then_some(wgpu::Face::Back)
+    }
+
+    /// What is added to depth.
+    fn depth_bias(self) -> wgpu::DepthBiasState {
+        match self {
+            // Reversed depth falls with distance.
+            Self::ShadowMap { slopes } => {
+                wgpu::DepthBiasState { slope_scale: -slopes, ..Default::default() }
+            }
+            _ => wgpu::DepthBiasState::default(),
+        }
     }
 
     /// How fragments change the image.
@@ -178,7 +195,7 @@ impl Shown {
 pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Shader<'a> {
     let material = key.material;
     let is = |wanted: &str| match pass {
-        RasterPass::Depth | RasterPass::ShadowMap => wanted == "depth",
+        RasterPass::Depth | RasterPass::ShadowMap { .. } => wanted == "depth",
         RasterPass::GBuffer { .. } => wanted == "gbuffer",
         RasterPass::Forward { .. } => wanted == "forward",
         RasterPass::Clay => wanted == "clay",
@@ -286,7 +303,7 @@ fn pipeline(
             depth_write_enabled: Some(pass.writes_depth()),
             depth_compare: Some(pass.depth_compare(orientation.depth)),
             stencil: Default::default(),
-            bias: Default::default(),
+            bias: pass.depth_bias(),
         }),
         multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
         fragment: fragment.map(|entry_point| wgpu::FragmentState {
@@ -315,10 +332,10 @@ fn entry_points(
     shown: Shown,
 ) -> (&'static str, Option<&'static str>, Vec<Option<wgpu::TextureFormat>>) {
     match pass {
-        RasterPass::Depth | RasterPass::ShadowMap if key.material.mask => {
+        RasterPass::Depth | RasterPass::ShadowMap { .. } if key.material.mask => {
             ("vertex_surface", Some("fragment_mask"), vec![])
         }
-        RasterPass::Depth | RasterPass::ShadowMap => ("vertex_depth", None, vec![]),
+        RasterPass::Depth | RasterPass::ShadowMap { .. } => ("vertex_depth", None, vec![]),
         RasterPass::GBuffer { ids } => {
             let emissive = shown.emissive.then_some(EMISSIVE_FORMAT);
             let ids = ids.then_some(MODEL_FORMAT);

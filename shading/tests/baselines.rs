@@ -163,8 +163,15 @@ fn raster_spheres_show_the_image_of_no_culling() {
             ..LightingOptions::default()
         };
         let reference = image_of(&gpu, &mut renderer, &view, &lights, Mode::Deferred, options);
-        let spheres =
-            RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default(), cut, suns, ShadowModel::None).unwrap();
+        let spheres = RasterSpheres::new(
+            &renderer,
+            lights.kinds(),
+            AreaModel::default(),
+            cut,
+            suns,
+            ShadowModel::None,
+        )
+        .unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };

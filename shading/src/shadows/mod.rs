@@ -15,20 +15,30 @@
 //! 4. `shadow.wesl` looks a sample up in all maps of a light. Points below the sample's horizon do not count: the
 //!    light without shadows leaves them out already.
 //!
-//! # The offset
+//! # The two offsets
 //!
-//! A texel holds the depth at its centre, and a look-up reads the texel that the sample falls into. A surface would
-//! shadow itself where it is nearer at the centre. So the sample is first moved along its normal, by
+//! A texel holds the depth at its centre, and a look-up reads the texel that the sample falls into. A lit surface would
+//! be dark where the centre shows a part of it, or of a surface beside it, that is nearer. Let `r` be the distance from
+//! a sample to the farthest texel centre that is read, as a tangent. Both offsets follow from it; nothing is tuned.
+//!
+//! *The sample's plane.* The sample is moved along its normal, by
 //!
 //! ```text
 //! offset = depth * r * s / (1 - r * s * a)
 //! ```
 //!
-//! with `r` the distance from the sample to the farthest texel centre that is read, as a tangent, and `a` and `s` the
-//! cosine and the sine between the normal and the axis of the face. The moved sample then lies in front of the plane
-//! through the sample, seen along the ray of each texel. This is exact for a flat surface. The offset is at most `r`
-//! times the depth for any slope, and 0 for a surface that faces the map. Nothing in it is tuned. Where a normal map
-//! turns the normal away from the surface, the offset is less than the surface needs by the cosine of the turn.
+//! with `a` and `s` the cosine and the sine between the normal and the axis of the face. The moved sample then lies in
+//! front of the plane through the sample, seen along the ray of each texel. So no surface behind this plane hides it:
+//! neither its own, nor that around a convex edge.
+//!
+//! *The caster's plane.* The rasteriser moves the depth of each triangle away from the light, by what its plane changes
+//! over the distance `r` (`slopes` times the greatest difference of neighbouring texels). Each texel then holds a depth
+//! behind the triangle's plane at the sample. So no plane with the sample in front of it hides the sample, such as the
+//! wall beside it.
+//!
+//! Both move a plane sideways by about a texel, whatever its slope. So light cannot pass a wall that is thicker than
+//! two texels, `4 depth / px`, or as many more as the filter is wide. The offset of a sample follows the shading
+//! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
 //!
 //! # Cost
 //!
@@ -164,7 +174,7 @@ impl ShadowMaps {
             &layout,
             scene,
             Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
-            RasterPass::ShadowMap,
+            RasterPass::ShadowMap { slopes: plan.slopes },
         )?;
         Ok(Self {
             figures,

@@ -49,6 +49,8 @@ pub(super) struct Plan {
     pub(super) faces: Vec<Face>,
     /// Width and height of the atlas, texels.
     pub(super) size: [u32; 2],
+    /// How far the rasteriser moves depth away from the light, in greatest differences between neighbouring texels.
+    pub(super) slopes: f32,
     /// Maps for each area light.
     pub(super) maps: u32,
     /// All maps.
@@ -73,9 +75,7 @@ impl Reach {
             LightShape::Spot { outer_angle, .. } if *outer_angle <= WIDEST_FACE => {
                 Self::Cone(f64::from(*outer_angle).tan())
             }
-            LightShape::Spot { outer_angle, .. }
-                if *outer_angle <= std::f32::consts::FRAC_PI_2 =>
-            {
+            LightShape::Spot { outer_angle, .. } if *outer_angle <= std::f32::consts::FRAC_PI_2 => {
                 Self::Half
             }
             LightShape::Spot { .. } => Self::All,
@@ -153,7 +153,9 @@ impl Plan {
             faces: Vec::new(),
             maps: Vec::new(),
         };
-        let reach = (0.5 * f64::from(taps.isqrt()) + SNAP_PX) * std::f64::consts::SQRT_2;
+        // The farthest texel centre that a look-up reads, along one axis and in all.
+        let across = 0.5 * f64::from(taps.isqrt()) + SNAP_PX;
+        let reach = across * std::f64::consts::SQRT_2;
         let mut records = vec![[taps.isqrt(), px, bits(planner.texel), bits(reach)]];
         let first = 1 + 3 * lights.len();
         for light in lights {
@@ -162,7 +164,9 @@ impl Plan {
         }
         records.append(&mut planner.maps);
         let map_count = ((records.len() - first) / 3) as u32;
-        Ok(Self { records, faces: planner.faces, size, maps, map_count })
+        // Depth differs by at most one greatest difference along each of the two axes.
+        let slopes = (2.0 * across) as f32;
+        Ok(Self { records, faces: planner.faces, size, slopes, maps, map_count })
     }
 }
 

@@ -1,0 +1,120 @@
+//! Where shadow maps must show nothing: no surface shadows itself, and no light leaks through a wall.
+
+use assign::{Light, View};
+use glam::Vec3;
+use scenes::{Material, Scene};
+use shading::ShadowModel;
+
+use crate::{
+    common::{
+        self,
+        quads::{grey, scene_of},
+    },
+    images, lamp, maps, spot,
+};
+
+const SIZE: [u32; 2] = [96, 64];
+
+/// A box between two corners: six rectangles that face outwards, or inwards with `turned`.
+fn walls_of(low: Vec3, high: Vec3, turned: bool) -> Vec<[Vec3; 3]> {
+    let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let wall = |axis: usize, sign: f32| {
+        let outward = axes[axis] * sign;
+        let normal = if turned { -outward } else { outward };
+        let x = axes[(axis + 1) % 3];
+        let y = normal.cross(x);
+        [center + outward * half, x * half.dot(x.abs()), y * half.dot(y.abs())]
+    };
+    (0..3).flat_map(|axis| [wall(axis, 1.0), wall(axis, -1.0)]).collect()
+}
+
+fn room() -> Vec<[Vec3; 3]> {
+    walls_of(Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 3.0, 3.0), true)
+}
+
+fn scene(quads: &[[Vec3; 3]]) -> Scene {
+    scene_of(quads, Material { double_sided: true, ..grey(0.5) }, vec![])
+}
+
+/// An empty room shadows nothing, for any texel, filter, light and slope: the image keeps its bits.
+#[test]
+fn no_surface_shadows_itself() {
+    let gpu = common::gpu();
+    let scene = scene(&room());
+    let view = View::look_at(Vec3::new(2.5, 1.0, 2.5), Vec3::new(-1.0, 0.6, -1.0), 1.4, 0.05, SIZE);
+    // Oblique to all walls, close to some of them.
+    let at = Vec3::new(-1.3, 2.6, 0.7);
+    let lights: [&[Light]; 4] = [
+        &[lamp(at)],
+        &[Light::point(at, 30.0, Vec3::ONE)],
+        &[spot(at, 0.9), spot(at, 1.5)],
+        &[
+            lamp(Vec3::new(0.0, 0.1, 2.0)),
+            Light::point(Vec3::new(2.9, 0.02, -2.9), 30.0, Vec3::ONE),
+        ],
+    ];
+    for lights in lights {
+        let models = [
+            ShadowModel::None,
+            maps(4, 32, 1),
+            maps(9, 64, 25),
+            maps(4, 128, 4),
+            maps(4, 512, 1),
+            maps(4, 512, 9),
+        ];
+        let (images, _) = images(&gpu, &scene, &view, lights, &models);
+        assert!(images[0].pixels.iter().flatten().sum::<f32>() > 1.0);
+        for (image, model) in images.iter().zip(models) {
+            let difference = image.difference(&images[0]).unwrap();
+            // A shader with shadows may round a last bit in another way.
+            assert!(difference.max_rel < 1e-5, "{model}, {lights:?}: {difference:?}");
+        }
+    }
+}
+
+/// A wall of 2 cm divides the room. No light reaches the half without lamps.
+#[test]
+fn no_light_leaks_through_a_wall_of_two_centimetres() {
+    let gpu = common::gpu();
+    let mut quads = room();
+    quads.extend(walls_of(Vec3::new(-0.01, 0.0, -3.0), Vec3::new(0.01, 3.0, 3.0), false));
+    let view = View::look_at(Vec3::new(2.8, 1.2, 2.8), Vec3::new(0.2, 0.5, -0.5), 1.4, 0.05, SIZE);
+    let at = Vec3::new(-1.0, 2.0, 0.3);
+    let close = Vec3::new(-0.3, 2.99, 0.0);
+    let lights = [
+        lamp(at),
+        Light::point(at, 30.0, Vec3::ONE),
+        spot(at, 0.9),
+        Light::point(close, 30.0, Vec3::ONE),
+        Light::point(Vec3::new(-2.9, 0.1, 2.9), 30.0, Vec3::ONE),
+    ];
+    for light in lights {
+        let models = [ShadowModel::None, maps(4, 512, 1), maps(25, 512, 1)];
+        let (images, _) = images(&gpu, &scene(&quads), &view, &[light], &models);
+        let lit = |ix: usize| {
+            images[ix].pixels.iter().filter(|pixel| pixel.iter().any(|c| *c > 0.0)).count()
+        };
+        assert!(lit(0) > 200, "without shadows the dark half is lit: {} pixels", lit(0));
+        for (ix, model) in models.iter().enumerate().skip(1) {
+            assert_eq!(lit(ix), 0, "pixels that light reaches: {model}, {light:?}");
+        }
+    }
+}
+
+/// A box on the floor is dark where it touches the floor.
+#[test]
+fn shadows_reach_their_casters() {
+    let gpu = common::gpu();
+    let mut quads = room();
+    quads.extend(walls_of(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5), false));
+    // Straight down on the edge between floor and box: 64 pixels for 20 cm.
+    let eye = Vec3::new(0.55, 0.2, 0.0);
+    let view = View::look_at(eye, Vec3::new(0.55, 0.0, 0.0), 0.927, 0.01, [64, 64]);
+    let light = Light::point(Vec3::new(-1.5, 2.0, 0.0), 30.0, Vec3::ONE);
+    let models = [ShadowModel::None, maps(1, 512, 1)];
+    let (images, _) = images(&gpu, &scene(&quads), &view, &[light], &models);
+    let lit = |ix: usize| images[ix].pixels.iter().filter(|p| p[0] > 0.0).count();
+    assert!(lit(0) > 1000, "{}", lit(0));
+    assert_eq!(lit(1), 0, "the foot of the box is in its shadow");
+}
