@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use shading::{EDGE, LightBvh, ListCheck, Mode};
 
 use crate::{
+    against_image,
     bench::Bench,
     checks::{check_area_options, check_options, checked, remove_stale, served},
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::{note_faults, note_flaws},
-    drift::unsteady,
+    drift::note_drift,
     error::HarnessError,
     machine::machine,
     measure::{Contest, Plan, Shown, Timetable, unbounded_image},
@@ -24,7 +25,7 @@ use crate::{
     record::{Seen, record},
     report,
     report::listed,
-    results::{Clock, Record, RefusedStrategy, Results, Truth, TruthLevel, Untested},
+    results::{RefusedStrategy, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
@@ -43,10 +44,15 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // Check the options before a device is opened.
     check_options(args, &args.choices()?)?;
+    let truth = against_image::open(args)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
-    let (results, pictures) = compare_on(&mut bench, args, command)?;
-    write(&results, &pictures, &args.out)
+    let (mut results, pictures) = compare_on(&mut bench, args, command)?;
+    let errors = match &truth {
+        Some(truth) => against_image::compare(&mut results, &pictures, truth)?,
+        None => String::new(),
+    };
+    Ok(write(&results, &pictures, &args.out)? + &errors)
 }
 
 /// Writes results and report; returns the table and where they are.
@@ -371,24 +377,6 @@ impl Run<'_> {
         }
         Ok(())
     }
-}
-
-/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
-/// clock to raise, and the poses of a path differ in their work.
-fn note_drift(record: &mut Record) {
-    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
-        return;
-    }
-    let Some(why) = unsteady(&record.frames_ms()) else { return };
-    let drift = format!(
-        "{} in {}: its times are not steady, measure it again: {why}",
-        record.strategy,
-        record.setting.mode.name()
-    );
-    record.note = Some(match record.note.take() {
-        Some(note) => format!("{note}; {drift}"),
-        None => drift,
-    });
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

@@ -3,6 +3,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod advise;
+mod against_image;
 pub mod bench;
 pub mod camera;
 pub mod chart;

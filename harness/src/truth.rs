@@ -82,7 +82,11 @@ fn summary(image: &TruthImage) -> String {
         image.lights,
         image.width,
         image.height,
-        if image.shadows { "shadows" } else { "no shadows" },
+        match (image.shadows, image.is_separated) {
+            (false, _) => "no shadows",
+            (true, false) => "shadows",
+            (true, true) => "separated shadows",
+        },
         image.bounces,
         if image.bounces == 1 { "bounce" } else { "bounces" },
         if image.is_indirect { ", indirect light alone" } else { "" },
@@ -179,7 +183,11 @@ fn trace(
     if args.indirect {
         return Ok(bounce());
     }
-    let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
+    let direct = match (args.shadows, args.separated) {
+        (false, _) => Transport::Unshadowed,
+        (true, false) => Transport::Direct,
+        (true, true) => Transport::Separated,
+    };
     let image = traced(direct, "direct light");
     match args.bounces {
         0 => Ok(image),
@@ -257,6 +265,7 @@ fn keep(
         standard_error: over_mean(error),
         shadows: args.shadows,
         bounces: args.bounces,
+        is_separated: args.separated,
         is_indirect: args.indirect,
         is_matte: args.matte_bounces,
         samples: args.samples,

@@ -44,6 +44,7 @@ fn truth() -> TruthImage {
         standard_error: 0.0004,
         shadows: false,
         bounces: 0,
+        is_separated: false,
         is_indirect: false,
         is_matte: false,
         samples: 64,

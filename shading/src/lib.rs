@@ -23,6 +23,7 @@
 
 mod area_model;
 mod before_lighting;
+mod bound_maps;
 mod contributions;
 mod dump;
 mod error;

@@ -5,10 +5,7 @@
 use assign::{AssignError, Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 
-use crate::{
-    LightingOptions, ShadingError, ltc,
-    shadows::{BoundMaps, ShadowMaps},
-};
+use crate::{LightingOptions, ShadingError, bound_maps::BoundMaps, ltc};
 
 /// Binding of `LightingUniform` in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
@@ -115,7 +112,7 @@ impl LightingInputs {
     pub(crate) fn new(
         gpu: &Gpu,
         options: LightingOptions,
-        maps: Option<&ShadowMaps>,
+        maps: Option<&BoundMaps>,
     ) -> Result<Self, ShadingError> {
         let shadows = bound_maps(options, maps)?;
         let uniform = gpu.uniform("lighting", size_of::<LightingRecord>() as u64);
@@ -194,7 +191,7 @@ impl LightingOptions {
 /// The maps that the options ask for.
 fn bound_maps(
     options: LightingOptions,
-    maps: Option<&ShadowMaps>,
+    maps: Option<&BoundMaps>,
 ) -> Result<Option<BoundMaps>, AssignError> {
     if !options.shadows.is_on() {
         return Ok(None);
@@ -207,7 +204,7 @@ fn bound_maps(
     if !options.suns.is_empty() {
         return refuse("none with suns, which have no maps".into());
     }
-    match maps.map(ShadowMaps::bound) {
+    match maps {
         None => refuse("none before Renderer::cast_shadows".into()),
         Some(maps) if maps.model() != options.shadows => {
             refuse(format!("{}, the model of the renderer's maps, or none", maps.model()))

@@ -137,6 +137,10 @@ pub struct CompareArgs {
     #[arg(long, help_heading = CHECKS, hide_short_help = true)]
     pub unbounded: bool,
 
+    /// Also compare the images with a truth image: an EXR file, such as truth.exr of `truth`
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "motion"], help_heading = CHECKS, hide_short_help = true)]
+    pub against: Option<PathBuf>,
+
     /// Count the light operations of every strategy that has lists
     ///
     /// One operation is one term (diffuse or specular) of one light at one sample. The report counts those in

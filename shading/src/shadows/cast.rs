@@ -3,7 +3,7 @@
 use assign::{EncoderPasses, LightBuffer, Passes};
 
 use super::{ShadowFigures, ShadowMaps};
-use crate::{Renderer, ShadingError, ShadowModel};
+use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
 
 impl Renderer {
     /// Makes shadow maps for lights that stand still, and draws them, in a submission of its own. It holds for frames
@@ -46,10 +46,11 @@ impl Renderer {
 
     /// What was made for the present shadows; `None` without any.
     pub fn shadow_figures(&self) -> Option<ShadowFigures> {
-        self.shadow_maps().map(ShadowMaps::figures)
+        self.shadows.as_ref().map(ShadowMaps::figures)
     }
 
-    pub(crate) fn shadow_maps(&self) -> Option<&ShadowMaps> {
-        self.shadows.as_ref()
+    /// The maps as lighting reads them.
+    pub(crate) fn shadow_maps(&self) -> Option<&BoundMaps> {
+        self.shadows.as_ref().map(ShadowMaps::bound)
     }
 }

@@ -56,24 +56,18 @@ mod cast;
 mod plan;
 mod points;
 
-use assign::{
-    AssignError, Gpu, Light, LightBuffer, Passes, ViewUniform, entry, storage_entry, texture,
-    texture_entry,
-};
+use assign::{AssignError, Gpu, Light, LightBuffer, Passes, ViewUniform};
 use bytemuck::{Zeroable, bytes_of, cast_slice};
 
 use crate::{
     ShadingError, ShadowModel,
+    bound_maps::BoundMaps,
     geometry::SceneGpu,
     raster::{Orientation, RasterPass, RasterPipelines},
     targets::DEPTH_FORMAT,
 };
 
 use plan::{Face, Plan};
-
-/// Bindings in group 2 of lighting shaders.
-const ATLAS_BINDING: u32 = 25;
-const RECORDS_BINDING: u32 = 26;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
 const MOST_ATLAS_PX: u32 = 1 << 15;
@@ -121,14 +115,6 @@ pub(crate) struct ShadowMaps {
     /// Bytes from one face's view to the next.
     view_stride: u32,
     bound: BoundMaps,
-}
-
-/// What lighting reads of shadow maps. Clones share it.
-#[derive(Clone, Debug)]
-pub(crate) struct BoundMaps {
-    model: ShadowModel,
-    atlas: wgpu::TextureView,
-    records: wgpu::Buffer,
 }
 
 impl ShadowMaps {
@@ -183,7 +169,7 @@ impl ShadowMaps {
             pipelines,
             views,
             view_stride,
-            bound: BoundMaps { model, atlas, records },
+            bound: BoundMaps::new(model, atlas, records),
         })
     }
 
@@ -213,7 +199,7 @@ impl ShadowMaps {
     ) {
         let descriptor = wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.bound.atlas,
+                view: self.bound.atlas(),
                 // Nothing is infinitely far.
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(0.0),
@@ -233,26 +219,6 @@ impl ShadowMaps {
                 scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
             }
         });
-    }
-}
-
-impl BoundMaps {
-    /// The model of the maps.
-    pub(crate) fn model(&self) -> ShadowModel {
-        self.model
-    }
-
-    /// Layout entries of group 2, for the stages that light.
-    pub(crate) fn layout(stages: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 2] {
-        [
-            texture_entry(ATLAS_BINDING, stages, wgpu::TextureSampleType::Depth),
-            storage_entry(RECORDS_BINDING, stages, true),
-        ]
-    }
-
-    /// Bind group entries of group 2.
-    pub(crate) fn entries(&self) -> [wgpu::BindGroupEntry<'_>; 2] {
-        [texture(ATLAS_BINDING, &self.atlas), entry(RECORDS_BINDING, &self.records)]
     }
 }
 

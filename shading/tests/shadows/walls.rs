@@ -3,7 +3,10 @@
 use assign::{Light, View};
 use glam::Vec3;
 use scenes::{Material, Scene};
-use shading::ShadowModel;
+use shading::{
+    HdrImage, ShadowModel,
+    traced::{TracedScene, Transport, TruthSettings, truth_image},
+};
 
 use crate::{
     common::{
@@ -69,6 +72,56 @@ fn no_surface_shadows_itself() {
             let difference = image.difference(&images[0]).unwrap();
             // A shader with shadows may round a last bit in another way.
             assert!(difference.max_rel < 1e-5, "{model}, {lights:?}: {difference:?}");
+        }
+    }
+}
+
+/// A column of 16 sides, 60 cm wide and as high as the room.
+fn column(at: Vec3) -> Vec<[Vec3; 3]> {
+    let side = |ix: u32| {
+        let (sin, cos) = (std::f32::consts::TAU * ix as f32 / 16.0).sin_cos();
+        let outward = Vec3::new(cos, 0.0, sin);
+        let half_width = 0.3 * (std::f32::consts::PI / 16.0).tan();
+        [at + outward * 0.3 + Vec3::Y * 1.5, Vec3::Y * 1.5, outward.cross(Vec3::Y) * half_width]
+    };
+    // They face the cross product of the edges: y x (outward x y) is outward.
+    (0..16).map(side).collect()
+}
+
+/// Edges of boxes and columns have no dark seams: where the truth is lit in a neighbourhood of two pixels, so is the
+/// image.
+#[test]
+fn edges_have_no_dark_seams() {
+    let gpu = common::gpu();
+    let mut quads = room();
+    quads.extend(walls_of(Vec3::new(-2.0, 0.0, -1.5), Vec3::new(-1.2, 0.9, -0.6), false));
+    quads.extend(walls_of(Vec3::new(0.5, 0.0, -2.0), Vec3::new(1.1, 1.4, -1.2), false));
+    quads.extend(column(Vec3::new(-0.4, 0.0, -1.0)));
+    let scene = scene(&quads);
+    let size = [192, 128];
+    let view = View::look_at(Vec3::new(0.4, 1.8, 2.8), Vec3::new(-0.4, 0.7, -1.0), 1.0, 0.05, size);
+    let traced = TracedScene::new(&scene);
+    for at in [Vec3::new(2.0, 2.5, 1.5), Vec3::new(-2.5, 2.8, 2.0), Vec3::new(-0.4, 1.0, 2.5)] {
+        let light = Light::point(at, 30.0, Vec3::ONE);
+        let models =
+            [ShadowModel::None, maps(1, 64, 1), maps(1, 256, 1), maps(1, 256, 25), maps(1, 1024, 1)];
+        let (images, gbuffer) = images(&gpu, &scene, &view, &[light], &models);
+        let sample_of = |pixel| gbuffer.sample(pixel, &traced);
+        let settings = TruthSettings::new(Transport::Direct);
+        let truth = truth_image(&traced, &[light], size, sample_of, settings, &|_, _| ()).radiance;
+        let lit = |image: &HdrImage, x: u32, y: u32| image.pixels[(y * size[0] + x) as usize][0] > 0.0;
+        let is_lit_around = |x: u32, y: u32| {
+            (y - 2..=y + 2).all(|y| (x - 2..=x + 2).all(|x| lit(&truth, x, y)))
+        };
+        let inside = (2..size[1] - 2).flat_map(|y| (2..size[0] - 2).map(move |x| (x, y)));
+        let open: Vec<(u32, u32)> = inside.filter(|&(x, y)| is_lit_around(x, y)).collect();
+        assert!(open.len() > 5_000, "{} pixels are lit", open.len());
+        for (image, model) in images.iter().zip(models).skip(1) {
+            // A texel of the coarsest map is wider than two pixels, and may hold the edge of a shadow.
+            let dark = open.iter().filter(|&&(x, y)| !lit(image, x, y)).count();
+            println!("{model}, {at}: {dark} of {} pixels", open.len());
+            let most = if model == models[1] { open.len() / 20 } else { open.len() / 500 };
+            assert!(dark <= most, "{model}, {at}: {dark} of {} pixels", open.len());
         }
     }
 }
