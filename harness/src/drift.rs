@@ -8,7 +8,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::results::{Clock, Record, median};
+use crate::results::median;
 
 /// Times of one window of a warm-up.
 const WINDOW: usize = 8;
@@ -135,24 +135,6 @@ fn is_level(times_ms: &[f64]) -> bool {
     let least = medians().fold(f64::INFINITY, f64::min);
     let most = medians().fold(0.0, f64::max);
     apart(least, most) <= STEADY || most - least <= TICK_MS
-}
-
-/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
-/// clock to raise, and the poses of a path differ in their work.
-pub fn note_drift(record: &mut Record) {
-    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
-        return;
-    }
-    let Some(why) = unsteady(&record.frames_ms()) else { return };
-    let drift = format!(
-        "{} in {}: its times are not steady, measure it again: {why}",
-        record.strategy,
-        record.setting.mode.name()
-    );
-    record.note = Some(match record.note.take() {
-        Some(note) => format!("{note}; {drift}"),
-        None => drift,
-    });
 }
 
 #[cfg(test)]

@@ -103,44 +103,47 @@ fn edges_have_no_dark_seams() {
     let traced = TracedScene::new(&scene);
     for at in [Vec3::new(2.0, 2.5, 1.5), Vec3::new(-2.5, 2.8, 2.0), Vec3::new(-0.4, 1.0, 2.5)] {
         let light = Light::point(at, 30.0, Vec3::ONE);
-        let models =
-            [ShadowModel::None, maps(1, 64, 1), maps(1, 256, 1), maps(1, 256, 25), maps(1, 1024, 1)];
+        let models = [
+            ShadowModel::None,
+            maps(1, 64, 1),
+            maps(1, 256, 1),
+            maps(1, 256, 25),
+            maps(1, 1024, 1),
+        ];
         let (images, gbuffer) = images(&gpu, &scene, &view, &[light], &models);
         let sample_of = |pixel| gbuffer.sample(pixel, &traced);
         let settings = TruthSettings::new(Transport::Direct);
         let truth = truth_image(&traced, &[light], size, sample_of, settings, &|_, _| ()).radiance;
-        let lit = |image: &HdrImage, x: u32, y: u32| image.pixels[(y * size[0] + x) as usize][0] > 0.0;
-        let is_lit_around = |x: u32, y: u32| {
-            (y - 2..=y + 2).all(|y| (x - 2..=x + 2).all(|x| lit(&truth, x, y)))
-        };
+        let lit =
+            |image: &HdrImage, x: u32, y: u32| image.pixels[(y * size[0] + x) as usize][0] > 0.0;
+        let is_lit_around =
+            |x: u32, y: u32| (y - 2..=y + 2).all(|y| (x - 2..=x + 2).all(|x| lit(&truth, x, y)));
         let inside = (2..size[1] - 2).flat_map(|y| (2..size[0] - 2).map(move |x| (x, y)));
         let open: Vec<(u32, u32)> = inside.filter(|&(x, y)| is_lit_around(x, y)).collect();
         assert!(open.len() > 5_000, "{} pixels are lit", open.len());
         for (image, model) in images.iter().zip(models).skip(1) {
-            // A texel of the coarsest map is wider than two pixels, and may hold the edge of a shadow.
             let dark = open.iter().filter(|&&(x, y)| !lit(image, x, y)).count();
             println!("{model}, {at}: {dark} of {} pixels", open.len());
-            let most = if model == models[1] { open.len() / 20 } else { open.len() / 500 };
-            assert!(dark <= most, "{model}, {at}: {dark} of {} pixels", open.len());
+            assert!(dark <= 3, "{model}, {at}: {dark} of {} pixels", open.len());
         }
     }
 }
 
-/// A wall of 2 cm divides the room. No light reaches the half without lamps.
+/// A wall of 2 cm divides a small room. No light reaches the half without lamps. At 512 texels, two texels are narrower than
+/// the wall up to 2.5 m from a light, and the room ends before.
 #[test]
 fn no_light_leaks_through_a_wall_of_two_centimetres() {
     let gpu = common::gpu();
-    let mut quads = room();
-    quads.extend(walls_of(Vec3::new(-0.01, 0.0, -3.0), Vec3::new(0.01, 3.0, 3.0), false));
-    let view = View::look_at(Vec3::new(2.8, 1.2, 2.8), Vec3::new(0.2, 0.5, -0.5), 1.4, 0.05, SIZE);
-    let at = Vec3::new(-1.0, 2.0, 0.3);
-    let close = Vec3::new(-0.3, 2.99, 0.0);
+    let mut quads = walls_of(Vec3::new(-1.2, 0.0, -1.2), Vec3::new(1.2, 2.0, 1.2), true);
+    quads.extend(walls_of(Vec3::new(-0.01, 0.0, -1.2), Vec3::new(0.01, 2.0, 1.2), false));
+    let view = View::look_at(Vec3::new(1.1, 0.9, 1.1), Vec3::new(0.1, 0.3, -0.2), 1.4, 0.05, SIZE);
+    let at = Vec3::new(-0.6, 1.6, 0.1);
     let lights = [
         lamp(at),
         Light::point(at, 30.0, Vec3::ONE),
         spot(at, 0.9),
-        Light::point(close, 30.0, Vec3::ONE),
-        Light::point(Vec3::new(-2.9, 0.1, 2.9), 30.0, Vec3::ONE),
+        Light::point(Vec3::new(-0.2, 1.99, 0.0), 30.0, Vec3::ONE),
+        Light::point(Vec3::new(-1.1, 0.05, 1.1), 30.0, Vec3::ONE),
     ];
     for light in lights {
         let models = [ShadowModel::None, maps(4, 512, 1), maps(25, 512, 1)];
