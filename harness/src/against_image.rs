@@ -1,18 +1,18 @@
-//! `compare --against`: the errors of images against a truth image.
+//! `compare --against` and `truth --against`: the errors of images against a truth image.
 //!
 //! They include those of shading, of shadows and of the G-buffer. Images that differ in no bit from no culling are not
 //! kept, and have its errors.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use shading::{HdrImage, ShadingError};
 
 use crate::{
-    cli::{CliError, CompareArgs, PicturesChoice},
+    cli::Size,
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
     pictures::Pictures,
-    results::Results,
+    results::{Errors, Results},
 };
 
 /// Metrics that are printed.
@@ -28,25 +28,30 @@ pub(crate) struct TruthFile {
 ///
 /// # Errors
 ///
-/// Where the file is no image, or of another size than the images; and with other pictures than all, which keep no
-/// image to compare.
-pub(crate) fn open(args: &CompareArgs) -> Result<Option<TruthFile>, HarnessError> {
-    let Some(path) = &args.against else { return Ok(None) };
-    let refuse = |accepted: &str| {
-        Err(CliError::out_of_range("--against", &path.display().to_string(), accepted).into())
-    };
-    if args.pictures != PicturesChoice::All {
-        return refuse(
-            "left out with --pictures differing and none, which keep no image of no culling",
-        );
-    }
+/// Where the file is no image, or of another size than the images.
+pub(crate) fn open(path: Option<&Path>, size: Size) -> Result<Option<TruthFile>, HarnessError> {
+    let Some(path) = path else { return Ok(None) };
     let image = HdrImage::read_exr(path)?;
-    let size = args.stage.size;
     if (image.width, image.height) != (size.width, size.height) {
         let (left, right) = ([size.width, size.height], [image.width, image.height]);
         return Err(ShadingError::Mismatch { left, right }.into());
     }
-    Ok(Some(TruthFile { path: path.clone(), image }))
+    Ok(Some(TruthFile { path: path.to_owned(), image }))
+}
+
+impl TruthFile {
+    /// The errors of an image against it, and a line about them.
+    pub(crate) fn compare(&self, name: &str, image: &HdrImage) -> (Errors, String) {
+        let exposure = self.image.auto_exposure();
+        let found = errors(&ImagePair { image, reference: &self.image, exposure });
+        let known = |id: &str| found.iter().find(|(known, _)| *known == id);
+        let printed: Vec<String> = PRINTED
+            .iter()
+            .filter_map(|id| known(id).map(|(_, value)| format!("{id} {value:.5}")))
+            .collect();
+        let line = format!("against  {}: {name}: {}\n", self.path.display(), printed.join(", "));
+        (stored(found), line)
+    }
 }
 
 /// Stores the errors of every record whose image was kept; returns a line for each.
@@ -55,26 +60,14 @@ pub(crate) fn compare(
     pictures: &Pictures,
     truth: &TruthFile,
 ) -> Result<String, HarnessError> {
-    let exposure = truth.image.auto_exposure();
     let mut lines = String::new();
     for record in &mut results.records {
         let Some(raw) = record.image.files.raw.as_deref() else { continue };
         let Some((_, bytes)) = pictures.iter().find(|(name, _)| name == raw) else { continue };
-        let image = HdrImage::from_exr(bytes)?;
-        let pair = ImagePair { image: &image, reference: &truth.image, exposure };
-        let found = errors(&pair);
-        let value =
-            |id: &str| found.iter().find(|(known, _)| *known == id).map(|(_, value)| *value);
-        let printed: Vec<String> =
-            PRINTED.iter().filter_map(|id| Some(format!("{id} {:.5}", value(id)?))).collect();
-        lines += &format!(
-            "against  {}: {} in {}: {}\n",
-            truth.path.display(),
-            record.strategy,
-            record.setting.mode.name(),
-            printed.join(", ")
-        );
-        record.image.truth_errors = stored(found);
+        let name = format!("{} in {}", record.strategy, record.setting.mode.name());
+        let (found, line) = truth.compare(&name, &HdrImage::from_exr(bytes)?);
+        record.image.truth_errors = found;
+        lines += &line;
     }
     Ok(lines)
 }

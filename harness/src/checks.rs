@@ -49,6 +49,11 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     }
     check_reach(args.specular_reach, args.cut)?;
     check_shadows(args.shadows, &args.stage, &args.layers)?;
+    if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
+        let accepted =
+            "left out with --pictures differing and none, which keep no image of no culling";
+        return Err(CliError::out_of_range("--against", &path.display().to_string(), accepted));
+    }
     if args.unbounded && args.shadows.is_on() {
         let accepted =
             "none with --unbounded, whose lights have other ranges than those of the maps";
@@ -359,6 +364,7 @@ mod tests {
             ("--temporal --checks 1", "--checks is 1: "),
             ("--temporal --path --frames 1", "--frames is 1: "),
             ("--unbounded --cut never", "--cut is never: "),
+            ("--against truth.exr --pictures none", "--against is truth.exr: "),
             ("--specular-reach 4 --cut never", "--cut is never: "),
         ] {
             let error = check(line).expect_err(line).to_string();

@@ -43,7 +43,7 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // Check the options before a device is opened.
     check_options(args, &args.choices()?)?;
-    let truth = against_image::open(args)?;
+    let truth = against_image::open(args.against.as_deref(), args.stage.size)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (mut results, pictures) = compare_on(&mut bench, args, command)?;

@@ -14,6 +14,7 @@ use shading::traced::{
 use shading::{EDGE, HdrImage, luminance};
 
 use crate::{
+    against_image,
     bench::Bench,
     checks::remove_stale,
     cli::{CliError, TruthArgs},
@@ -102,6 +103,7 @@ pub fn render(
     command: Vec<String>,
 ) -> Result<Results, HarnessError> {
     check(args)?;
+    let other = against_image::open(args.against.as_deref(), args.stage.size)?;
     let gpu = bench.gpu().clone();
     let stage = bench.stage(&args.stage)?;
     remove_stale(&args.out)?;
@@ -112,6 +114,11 @@ pub fn render(
     let notes = notes(scene.emissive_count(), args);
     drop(scene);
     let mut truth = keep(stage, args, &image, seconds)?;
+    if let Some(other) = other {
+        let (found, line) = other.compare("truth", &image.radiance);
+        say(line.trim_end());
+        truth.against_errors = found;
+    }
     if !args.shadows {
         truth.gbuffer_errors = gbuffer_errors(&gpu, stage, args, &image)?;
     }
@@ -271,6 +278,7 @@ fn keep(
         samples: args.samples,
         sample_seed: Some(args.sample_seed.unwrap_or(args.stage.seed)),
         gbuffer_errors: Errors::new(),
+        against_errors: Errors::new(),
         seconds,
     })
 }

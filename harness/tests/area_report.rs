@@ -50,6 +50,7 @@ fn truth() -> TruthImage {
         samples: 64,
         sample_seed: Some(1),
         gbuffer_errors: [("rel_mse".to_owned(), Some(3.25e-5))].into(),
+        against_errors: Default::default(),
         seconds: 2.5,
     }
 }

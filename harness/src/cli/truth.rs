@@ -49,6 +49,10 @@ pub struct TruthArgs {
     #[arg(long, display_order = 11, value_name = "N", allow_hyphen_values = true, value_parser = values::seed)]
     pub sample_seed: Option<u64>,
 
+    /// Also compare the image with another truth image of the same size: an EXR file
+    #[arg(long, display_order = 12, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+
     /// GPU to use, by any part of its name
     #[arg(long, display_order = 12, value_name = "NAME", value_parser = values::text)]
     pub adapter: Option<String>,

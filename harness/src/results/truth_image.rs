@@ -53,6 +53,9 @@ pub struct TruthImage {
     /// against this truth. Empty with shadows, and in older results, whose truths come from the G-buffer.
     #[serde(default, skip_serializing_if = "Errors::is_empty")]
     pub gbuffer_errors: Errors,
+    /// With `--against`: errors against another truth image, by metric.
+    #[serde(default, skip_serializing_if = "Errors::is_empty")]
+    pub against_errors: Errors,
     /// Render time on the CPU, seconds.
     pub seconds: f64,
 }
