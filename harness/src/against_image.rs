@@ -1,7 +1,6 @@
 //! `compare --against` and `truth --against`: the errors of images against a truth image.
 //!
-//! They include those of shading, of shadows and of the G-buffer. Images that differ in no bit from no culling are not
-//! kept, and have its errors.
+//! They include those of shading, of shadows and of the G-buffer.
 
 use std::path::{Path, PathBuf};
 
@@ -11,8 +10,8 @@ use crate::{
     cli::Size,
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
-    pictures::Pictures,
     results::{Errors, Results},
+    stored::Store,
 };
 
 /// Metrics that are printed.
@@ -54,18 +53,19 @@ impl TruthFile {
     }
 }
 
-/// Stores the errors of every record whose image was kept; returns a line for each.
+/// Stores the errors of every record whose image was kept in the folder `out`; returns a line for each.
 pub(crate) fn compare(
     results: &mut Results,
-    pictures: &Pictures,
+    out: &Path,
     truth: &TruthFile,
 ) -> Result<String, HarnessError> {
+    let mut store = Store::new(out);
     let mut lines = String::new();
     for record in &mut results.records {
-        let Some(raw) = record.image.files.raw.as_deref() else { continue };
-        let Some((_, bytes)) = pictures.iter().find(|(name, _)| name == raw) else { continue };
+        let raw = record.image.files.raw.as_deref();
+        let Some(image) = store.image(raw)? else { continue };
         let name = format!("{} in {}", record.strategy, record.setting.mode.name());
-        let (found, line) = truth.compare(&name, &HdrImage::from_exr(bytes)?);
+        let (found, line) = truth.compare(&name, &image);
         record.image.truth_errors = found;
         lines += &line;
     }

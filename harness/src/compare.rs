@@ -48,7 +48,7 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, Harne
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (mut results, pictures) = compare_on(&mut bench, args, command)?;
     let errors = match &truth {
-        Some(truth) => against_image::compare(&mut results, &pictures, truth)?,
+        Some(truth) => against_image::compare(&mut results, &args.out, truth)?,
         None => String::new(),
     };
     Ok(write(&results, &pictures, &args.out)? + &errors)

@@ -134,35 +134,16 @@ impl HdrImage {
     /// Reads an EXR file that [`write_exr`](Self::write_exr) wrote, or any other with channels R, G
     /// and B.
     pub fn read_exr(path: &Path) -> Result<Self, ShadingError> {
-        let bytes = std::fs::read(path)
-            .map_err(|e| ShadingError::Read { path: path.to_owned(), reason: e.to_string() })?;
-        Self::from_exr(&bytes).map_err(|error| match error {
-            ShadingError::Read { reason, .. } => {
-                ShadingError::Read { path: path.to_owned(), reason }
-            }
-            other => other,
-        })
-    }
-
-    /// The image of an EXR file's bytes, as [`to_exr`](Self::to_exr) makes them.
-    pub fn from_exr(bytes: &[u8]) -> Result<Self, ShadingError> {
-        use exr::prelude::{ReadChannels, ReadLayers, read};
-
-        let read = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .rgba_channels(
-                |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
-                |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-                    if let Some(pixel) = pixels.get_mut(at.y() * *width + at.x()) {
-                        *pixel = [r, g, b];
-                    }
-                },
-            )
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(std::io::Cursor::new(bytes))
-            .map_err(|e| ShadingError::Read { path: "image.exr".into(), reason: e.to_string() })?;
+        let read = exr::prelude::read_first_rgba_layer_from_file(
+            path,
+            |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
+            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+                if let Some(pixel) = pixels.get_mut(at.y() * *width + at.x()) {
+                    *pixel = [r, g, b];
+                }
+            },
+        )
+        .map_err(|e| ShadingError::Read { path: path.to_owned(), reason: e.to_string() })?;
         let size = read.layer_data.size;
         let (_, pixels) = read.layer_data.channel_data.pixels;
         Ok(Self { width: size.width() as u32, height: size.height() as u32, pixels })
