@@ -335,7 +335,7 @@ mod tests {
             "--fog 0.1",
             "--particles 9",
             "--motion drift",
-            "--vpls 9",
+            "--vpls 64",
             "--light-order gpu",
             "--unbounded",
         ] {

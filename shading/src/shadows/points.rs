@@ -114,10 +114,11 @@ mod tests {
             let left =
                 points.iter().filter(|p| p.offset.x + f64::from(position.x) < 0.0).count() as f64;
             let share = left / f64::from(count);
-            assert!(count < 25 || (share - 1.0 / 3.0).abs() < 0.05, "{count}: {share}");
+            let most = 0.5 / f64::from(count).sqrt();
+            assert!((share - 1.0 / 3.0).abs() < most, "{count}: {share}");
             let mean = points.iter().map(|p| p.offset.y).sum::<f64>() / f64::from(count)
                 + f64::from(position.y);
-            assert!(count < 25 || mean.abs() < 0.08, "{count}: {mean}");
+            assert!(mean.abs() < most, "{count}: {mean}");
         }
     }
 }
