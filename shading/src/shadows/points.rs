@@ -1,7 +1,7 @@
 //! The points of an emitter from which shadow maps are drawn.
 
 use assign::{Emitter, Outline};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A point of an emitter, and its share of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub(super) fn points_of(emitter: &Emitter, count: u32) -> Vec<LightPoint> {
 
 /// A grid of `side` x `side` points from corner to corner.
 fn corners_of_quads(emitter: &Emitter, side: u32) -> Vec<LightPoint> {
-    let [x, y] = emitter.half_axes().map(|axis| axis.as_dvec3());
+    let [x, y] = emitter.half_axes().map(Vec3::as_dvec3);
     let last = side - 1;
     let place = |ix: u32| 2.0 * f64::from(ix) / f64::from(last) - 1.0;
     let weight = |ix: u32| if ix == 0 || ix == last { 1 } else { 2 };
@@ -74,8 +74,6 @@ fn polygon_point(emitter: &Emitter, ix: u32, count: u32) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::MAP_COUNTS;
 
