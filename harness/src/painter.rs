@@ -15,12 +15,12 @@ pub enum Painter<'a> {
         /// The strategy.
         strategy: &'a mut dyn Assignment,
         /// Lighting with its look-up.
-        lighting: Lighting,
+        lighting: Box<Lighting>,
         /// The number of the frame, if it draws at random: its seed.
         frame_ix: Option<u32>,
     },
     /// Light volumes.
-    RasterSphere(RasterSpheres),
+    RasterSphere(Box<RasterSpheres>),
     /// Surfaces without lights.
     Clay,
 }
@@ -50,9 +50,9 @@ impl<'a> Painter<'a> {
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 let frame_ix = is_random.then_some(0);
-                Self::Lists { strategy: strategy.as_mut(), lighting, frame_ix }
+                Self::Lists { strategy: strategy.as_mut(), lighting: Box::new(lighting), frame_ix }
             }
-            Method::RasterSphere => Self::RasterSphere(raster_spheres(stage, cut)?),
+            Method::RasterSphere => Self::RasterSphere(Box::new(raster_spheres(stage, cut)?)),
             Method::Clay => Self::Clay,
         })
     }
