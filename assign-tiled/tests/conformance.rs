@@ -166,13 +166,13 @@ fn faults_are_rejected() {
 }
 
 #[test]
-fn tiles_without_surfaces_get_empty_lists() {
+fn tiles_without_surfaces_read_all_lights() {
     let gpu = Gpu::open(None).unwrap();
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
     let light = assign::Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
     let lights = LightBuffer::new(&gpu, &[light; 3]).unwrap();
     let mut strategy = tiled(Bounds::Explicit, "16x16", CullSettings::default())(&gpu).unwrap();
-    for (depth, count) in [(0.05, 3), (view.depth_clear(), 0), (0.05, 3)] {
+    for (depth, is_empty) in [(0.05, false), (view.depth_clear(), true), (0.05, false)] {
         let depth = conformance::flat_depth(&gpu, [64, 48], depth);
         let frame = Frame::new(&view, &lights).with_depth(&depth);
         strategy.prepare(&gpu, &frame).unwrap();
@@ -180,6 +180,8 @@ fn tiles_without_surfaces_get_empty_lists() {
         strategy.record(&frame, &mut assign::EncoderPasses { encoder: &mut encoder });
         gpu.queue.submit([encoder.finish()]);
         let lists = strategy.lists().snapshot(&gpu).unwrap();
-        assert!((0..12).all(|tile| lists.list(tile).unwrap().count == count), "{lists:?}");
+        assert!((0..12).all(|tile| lists.list(tile).unwrap().count == 3), "{lists:?}");
+        assert!((0..12).all(|tile| lists.is_all_lights(tile) == is_empty), "{lists:?}");
+        assert_eq!(lists.counters.occupied_groups, if is_empty { 0 } else { 12 });
     }
 }

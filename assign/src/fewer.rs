@@ -3,8 +3,8 @@
 use glam::Vec4;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
-    Lookup, MIN_RANGE_M, Needs, Passes, View,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightShape, MIN_RANGE_M, Passes, View,
+    leave_to_inner,
 };
 
 /// Which lights of a frame have lists if there are too many.
@@ -110,16 +110,10 @@ impl Assignment for Fewer {
         format!("{}/{}{}", self.inner.id(), self.kept.name(), self.most)
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
+    leave_to_inner!(needs, compile, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.kept, self.most)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -136,22 +130,6 @@ impl Assignment for Fewer {
             true => self.inner.record(&Frame { lights: &self.copy, ..*frame }, passes),
             false => self.inner.record(frame, passes),
         }
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

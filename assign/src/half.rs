@@ -13,8 +13,8 @@
 //! brightness, and the edges of tiles show.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
-    Lookup, MAX_RANGE_M, MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightShape, MAX_RANGE_M, MIN_RANGE_M,
+    Passes, leave_to_inner,
 };
 
 /// A strategy that makes its lists for positions and ranges in half precision. Shading reads those of the frame.
@@ -68,20 +68,10 @@ impl Assignment for Half {
         format!("{}/half", self.inner.id())
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, compile, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -93,22 +83,6 @@ impl Assignment for Half {
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         self.inner.record(&Frame { lights: &self.copy, ..*frame }, passes);
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

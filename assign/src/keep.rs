@@ -19,8 +19,8 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, FrameWrites, Gpu, LightBuffer, LightKinds, LightLists,
-    LightTraits, Lookup, ModelBox, Needs, Passes, SampleDomain, Travel, View,
+    AssignError, Assignment, Frame, FrameWrites, Gpu, LightBuffer, LightKinds, LightTraits,
+    ModelBox, Passes, SampleDomain, Travel, View, leave_to_inner,
 };
 
 /// Room for lights that become faster: the next frames may move them so much further than the last one.
@@ -111,13 +111,7 @@ impl Assignment for Keep {
         format!("{}/keep{}", self.inner.id(), self.frames)
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.frames)?))
@@ -173,22 +167,6 @@ impl Assignment for Keep {
             (None, Some((_, age))) => *age += 1,
             (None, None) => {}
         }
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

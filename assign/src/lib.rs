@@ -54,6 +54,7 @@ pub mod intersect;
 mod keep;
 mod kept_bind_group;
 pub mod kernel;
+mod leave_to_inner;
 mod light;
 mod light_buffer;
 mod light_changes;

@@ -11,9 +11,7 @@
 //! Bounds made from these depths hold other parts of the scene. In reflections, tiles and clusters lack the lights of
 //! what they show. Views without an oblique near plane stay right.
 
-use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes, View,
-};
+use crate::{AssignError, Assignment, Frame, Gpu, Passes, View, leave_to_inner};
 
 /// A strategy that makes its lists as if the near plane were perpendicular to the viewing axis. Shading rebuilds
 /// samples as the view says.
@@ -38,20 +36,10 @@ impl Assignment for PlainDepth {
         format!("{}/plain-depth", self.inner.id())
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, compile, lookup, bind_group, lists, memory_bytes);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(self.inner.for_view(gpu)?)))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -60,25 +48,5 @@ impl Assignment for PlainDepth {
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         self.inner.record(&Frame { view: &plain(frame.view), ..*frame }, passes);
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }

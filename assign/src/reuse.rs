@@ -1,9 +1,6 @@
 //! Reuse of lists over several frames: the `update` axis.
 
-use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
-    SampleDomain,
-};
+use crate::{AssignError, Assignment, Frame, Gpu, Passes, SampleDomain, leave_to_inner};
 
 /// A strategy that makes its lists only every `frames` frames.
 ///
@@ -55,20 +52,10 @@ impl Assignment for Reuse {
         format!("{}/reuse{}", self.inner.id(), self.frames)
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, compile, lookup, bind_group, lists, memory_bytes);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(self.inner.for_view(gpu)?, self.frames)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -100,25 +87,5 @@ impl Assignment for Reuse {
             self.inner.lists_mut().record_writes(passes.encoder());
         }
         self.age = Some(age);
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }

@@ -32,8 +32,8 @@
 //! - Area lights keep their ranges.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, LightTraits,
-    Lookup, MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightShape, MIN_RANGE_M, Passes,
+    leave_to_inner,
 };
 
 /// A strategy that makes its lists for random ranges. Shading must know the threshold, and [`Frame::seed`].
@@ -101,20 +101,10 @@ impl Assignment for Stochastic {
         format!("{}/stochastic{}", self.inner.id(), self.threshold)
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, compile, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.threshold)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -129,22 +119,6 @@ impl Assignment for Stochastic {
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         self.inner.record(&Frame { lights: &self.copy, ..*frame }, passes);
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

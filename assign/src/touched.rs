@@ -21,8 +21,8 @@
 use glam::Vec3;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, LightTraits, Lookup,
-    ModelBox, Needs, Passes, SampleDomain, View, check_limits, storage_buffer_limits,
+    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightTraits, ModelBox, Passes,
+    SampleDomain, View, check_limits, leave_to_inner, storage_buffer_limits,
 };
 
 /// The pool has room for so many times the entries of one frame.
@@ -93,13 +93,7 @@ impl Assignment for Touched {
         format!("{}/touched", self.inner.id())
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?)?))
@@ -145,22 +139,6 @@ impl Assignment for Touched {
         let changes = stays.then_some(&self.changes);
         self.inner.record(&Frame { changes, ..*frame }, passes);
         self.made = Some(made);
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

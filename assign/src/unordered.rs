@@ -17,8 +17,8 @@
 //! renderer, where an atomic costs less than the order that it gives up.
 
 use crate::{
-    AssignError, Assignment, Frame, FrameBindings, Gpu, LightLists, LightTraits, ListsBindings,
-    Lookup, Needs, Passes, Shader, Storage, entries::uniform_entry, entry, kernel,
+    AssignError, Assignment, Frame, FrameBindings, Gpu, ListsBindings, Passes, Shader, Storage,
+    entries::uniform_entry, entry, kernel, leave_to_inner,
 };
 
 /// Bind group of the lists in the kernel.
@@ -88,20 +88,10 @@ impl Assignment for Unordered {
         format!("{}/unordered", self.inner.id())
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(needs, is_view_bound, compile, lookup, bind_group, lists);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.list_cap)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -121,22 +111,6 @@ impl Assignment for Unordered {
             pass.set_pipeline(&self.pipeline);
             pass.dispatch_workgroups(groups, 1, 1);
         });
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -1,9 +1,9 @@
 //! Runs the conformance suite on no culling, and tests the suite's own promises.
 
 use assign::{
-    AssignError, Assignment, Everything, Frame, Gpu, LightLists, Lookup, Needs, Passes,
-    SampleDomain,
+    AssignError, Assignment, Everything, Frame, Gpu, Needs, SampleDomain,
     conformance::{self, CASES, ConformanceError, Outcome, SHARED_CASES, faulty::Fault},
+    leave_to_inner,
 };
 
 fn everything(gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
@@ -60,6 +60,8 @@ impl Assignment for Picky {
     fn id(&self) -> String {
         "Picky".into()
     }
+
+    leave_to_inner!(record, lookup, bind_group, lists, memory_bytes);
     fn needs(&self) -> Needs {
         Needs { depth: true, normals: true, ..Needs::default() }
     }
@@ -82,24 +84,6 @@ impl Assignment for Picky {
             return refuse("orthographic views");
         }
         self.inner.prepare(gpu, frame)
-    }
-    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        self.inner.record(frame, passes);
-    }
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }
 

@@ -1,8 +1,6 @@
 //! A strategy that stays with the view and the depth buffer of its first frame.
 
-use assign::{
-    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, SampleDomain, View,
-};
+use assign::{AssignError, Assignment, Frame, Gpu, Passes, SampleDomain, View, leave_to_inner};
 
 /// Its lists are of the first frame's surfaces and of every frame's lights.
 pub(crate) struct FirstView {
@@ -33,9 +31,7 @@ impl Assignment for FirstView {
         self.inner.id()
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
+    leave_to_inner!(needs, lookup, bind_group, lists, memory_bytes);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(self.inner.for_view(gpu)?)))
@@ -52,25 +48,5 @@ impl Assignment for FirstView {
         if let Some(first) = &self.first {
             self.inner.record(&frame_of(first, frame, frame.samples), passes);
         }
-    }
-
-    fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }

@@ -4,9 +4,10 @@ use bytemuck::bytes_of;
 
 pub use super::fault::Fault;
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightNode, LightShape,
-    LightTraits, Lookup, Needs, Passes, Shader, StrategyModule,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightNode, LightShape, Lookup, Passes,
+    Shader, StrategyModule,
     kernel::{self, Slot},
+    leave_to_inner,
 };
 
 /// A look-up that returns a group that does not exist.
@@ -142,16 +143,10 @@ impl Assignment for Faulty {
         format!("{} with {:?}", self.inner.id(), self.fault)
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
+    leave_to_inner!(needs, compile, lists, memory_bytes);
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self::new(gpu, self.inner.for_view(gpu)?, self.fault)?))
-    }
-
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -216,18 +211,6 @@ impl Assignment for Faulty {
             Fault::StaleBinding => self.first_binding.as_ref(),
             _ => self.inner.bind_group(),
         }
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }
 

@@ -1,9 +1,6 @@
 //! Negative controls of a strategy's own shader: the same strategy with other WESL.
 
-use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, LightTraits, Lookup, Needs, Passes,
-    StrategyModule, StrategyWesl,
-};
+use crate::{AssignError, Assignment, Gpu, Lookup, StrategyModule, StrategyWesl, leave_to_inner};
 
 /// A strategy whose look-up has other text, to plant faults in it.
 pub struct Reworded {
@@ -49,47 +46,22 @@ impl Assignment for Reworded {
         self.inner.id()
     }
 
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-
-    fn is_view_bound(&self) -> bool {
-        self.inner.is_view_bound()
-    }
+    leave_to_inner!(
+        needs,
+        is_view_bound,
+        compile,
+        prepare,
+        record,
+        bind_group,
+        lists,
+        memory_bytes
+    );
 
     fn for_view(&self, gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Self { inner: self.inner.for_view(gpu)?, module: self.module }))
     }
 
-    fn compile(&mut self, gpu: &Gpu, lights: LightTraits) -> Result<(), AssignError> {
-        self.inner.compile(gpu, lights)
-    }
-
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        self.inner.prepare(gpu, frame)
-    }
-
-    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        self.inner.record(frame, passes);
-    }
-
     fn lookup(&self) -> Lookup<'_> {
         Lookup { module: self.module, ..self.inner.lookup() }
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
     }
 }

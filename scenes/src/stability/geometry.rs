@@ -9,20 +9,11 @@ use super::{
 };
 use crate::Aabb;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Geometry, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::FalsePositives,
-        ..row(
+        ..Group::Geometry.row(
             1,
             "tile-corner-light",
             "Large balls that cross no plane of a tile's frustum and still miss it at a corner are listed by tests \
@@ -32,56 +23,56 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         figure: Figure::ListedOverContributing,
-        ..row(
+        ..Group::Geometry.row(
             2,
             "depth-discontinuity",
             "Between a fence and a far wall, a tile's depth range holds every light of the void.",
             depth_discontinuity,
         )
     },
-    row(
+    Group::Geometry.row(
         3,
         "thin-near-slices",
         "With the near plane at 1 mm, exponential slices near the eye are thinner than rounding.",
         thin_near_slices,
     ),
-    row(
+    Group::Geometry.row(
         4,
         "far-slices",
         "Slices that are hundreds of metres long list every light of a district.",
         far_slices,
     ),
-    row(
+    Group::Geometry.row(
         5,
         "infinite-far",
         "Without a far plane, the logarithm of a slice's end is infinite or not a number.",
         infinite_far,
     ),
-    row(
+    Group::Geometry.row(
         6,
         "beyond-far-lights",
         "Lights beyond the far plane that reach in are cut away with the plane.",
         beyond_far_lights,
     ),
-    row(
+    Group::Geometry.row(
         7,
         "inside-lights",
         "Methods that draw front faces of light volumes lose lights that hold the eye.",
         inside_lights,
     ),
-    row(
+    Group::Geometry.row(
         8,
         "behind-camera",
         "Lights behind the eye have no outline on screen, but reach what is before it.",
         behind_camera,
     ),
-    row(
+    Group::Geometry.row(
         9,
         "light-at-eye",
         "At distance 0, directions and fall-off become infinite or not a number.",
         light_at_eye,
     ),
-    row(
+    Group::Geometry.row(
         10,
         "one-covers-all",
         "One light that covers everything spoils the boxes of a hierarchy, and the cells of a grid.",

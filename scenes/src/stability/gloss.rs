@@ -12,32 +12,23 @@ use crate::{
     noise::{fractal, normal, render_all},
 };
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Gloss, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
-    row(
+    Group::Gloss.row(
         30,
         "mirror-floor",
         "A polished floor shows lights far outside of their diffuse radius, so a threshold or a specular radius cuts \
          highlights off.",
         mirror_floor,
     ),
-    row(
+    Group::Gloss.row(
         31,
         "curved-normals",
         "Normal maps and strong curvature turn the shading normal away from the surface, out of the cone of its \
          triangle.",
         curved_normals,
     ),
-    row(
+    Group::Gloss.row(
         32,
         "mixed-roughness",
         "One group holds polished and rough samples, so one specular radius for all is too short or too long.",

@@ -9,24 +9,15 @@ use super::{
 };
 use crate::Aabb;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Indirect, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
-    row(
+    Group::Indirect.row(
         33,
         "vpl-on-surface",
         "A virtual point light lies on the surface that it lights, where inverse-square fall-off has no bound.",
         vpl_on_surface,
     ),
-    row(
+    Group::Indirect.row(
         34,
         "thin-wall",
         "Light leaks through a wall of 2 cm, because lights without shadows reach what lies behind it.",

@@ -269,6 +269,23 @@ impl Kit {
         Light { shape, ..self.point_light(position, range_m) }
     }
 
+    /// Adds spots of 4 m at random places in a box. Their half angles lie between two, in radians, and are full within
+    /// a share of that.
+    pub(super) fn scatter_spots(
+        &mut self,
+        count: usize,
+        room: Aabb,
+        (narrow, wide): (f32, f32),
+        inner_share: f32,
+    ) {
+        for _ in 0..count {
+            let place = self.point_in(room);
+            let (direction, outer) = (self.direction(), self.range(narrow, wide));
+            let spot = self.spot(place, direction, (inner_share * outer, outer), 4.0);
+            self.lights.push(spot);
+        }
+    }
+
     /// A rectangle of random colour, from its half axes. It emits towards `half_x` x `half_y`.
     pub(super) fn rectangle(
         &mut self,

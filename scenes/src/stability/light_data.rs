@@ -5,75 +5,80 @@ use glam::Vec3;
 
 use super::{Figure, Group, Scenario, kit::Kit};
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::LightData, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
-    row(
+    Group::LightData.row(
         11,
         "degenerate-lights",
         "Lights of range 0, of a negative range, without intensity or without area divide by 0.",
         degenerate_lights,
     ),
-    row(
+    Group::LightData.row(
         12,
         "non-finite-lights",
         "A position that is not a number poisons every box, sort and sum that it enters.",
         non_finite_lights,
     ),
-    row(
+    Group::LightData.row(
         13,
         "count-0",
         "Without any light, buffers of length 0 cannot be bound and averages divide by 0.",
         no_light,
     ),
-    row(13, "count-1", "A hierarchy over one light has no inner node.", |kit| {
+    Group::LightData.row(13, "count-1", "A hierarchy over one light has no inner node.", |kit| {
         kit.hall();
         let light = kit.point_light(Vec3::new(0.0, 2.2, -4.0), 7.0);
         kit.lights.push(light);
     }),
-    row(13, "count-31", "One light less than a word of bits.", |kit| count(kit, 31, (2.0, 5.0))),
-    row(13, "count-33", "One light more than a word of bits.", |kit| count(kit, 33, (2.0, 5.0))),
+    Group::LightData.row(13, "count-31", "One light less than a word of bits.", |kit| {
+        count(kit, 31, (2.0, 5.0))
+    }),
+    Group::LightData.row(13, "count-33", "One light more than a word of bits.", |kit| {
+        count(kit, 33, (2.0, 5.0))
+    }),
     Scenario {
         heavy: true,
-        ..row(13, "count-65537", "Light 65,536 is lost where indices have 16 bits.", |kit| {
-            count(kit, 65_536, (0.04, 0.25));
-            // The last light shows.
-            let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
-            kit.lights.push(light);
-        })
+        ..Group::LightData.row(
+            13,
+            "count-65537",
+            "Light 65,536 is lost where indices have 16 bits.",
+            |kit| {
+                count(kit, 65_536, (0.04, 0.25));
+                // The last light shows.
+                let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
+                kit.lights.push(light);
+            },
+        )
     },
     Scenario {
         heavy: true,
-        ..row(13, "count-1048577", "Light 2^20 is lost where indices have 20 bits.", |kit| {
-            count(kit, 1 << 20, (0.01, 0.1));
-            let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
-            kit.lights.push(light);
-        })
+        ..Group::LightData.row(
+            13,
+            "count-1048577",
+            "Light 2^20 is lost where indices have 20 bits.",
+            |kit| {
+                count(kit, 1 << 20, (0.01, 0.1));
+                let light = kit.point_light(Vec3::new(0.0, 1.0, -2.0), 3.0);
+                kit.lights.push(light);
+            },
+        )
     },
     Scenario {
         figure: Figure::ListedOverContributing,
-        ..row(
+        ..Group::LightData.row(
             14,
             "crowded-group",
             "2,000 lights in one group exceed every fixed list, and the pool of entries.",
             crowded_group,
         )
     },
-    row(
+    Group::LightData.row(
         15,
         "coincident-centres",
         "Lights at one point have equal codes, which a hierarchy cannot split.",
         coincident_centres,
     ),
-    row(
+    Group::LightData.row(
         16,
         "extreme-intensities",
         "Bright lights become infinite in half floats, and dim ones 0.",

@@ -9,7 +9,7 @@ use super::{
 use crate::{Aabb, builder::arc};
 
 const fn row(name: &'static str, breaks: &'static str, make: fn(&mut Kit)) -> Scenario {
-    Scenario { number: None, ..Scenario::still(0, name, Group::Reported, breaks, make) }
+    Scenario { number: None, ..Group::Reported.row(0, name, breaks, make) }
 }
 
 /// The scenarios.

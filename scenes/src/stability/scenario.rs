@@ -78,6 +78,27 @@ impl Group {
             Self::Reported => "reported",
         }
     }
+
+    /// The row of one of its scenarios, which is drawn still. Others change some fields.
+    pub(super) const fn row(
+        self,
+        number: u32,
+        name: &'static str,
+        breaks: &'static str,
+        make: fn(&mut Kit),
+    ) -> Scenario {
+        Scenario {
+            number: Some(number),
+            name,
+            group: self,
+            breaks,
+            figure: Figure::None,
+            moves: &[],
+            options: &[],
+            heavy: false,
+            make,
+        }
+    }
 }
 
 /// The figure that says more about a method than whether it is exact.
@@ -109,27 +130,6 @@ impl Figure {
 }
 
 impl Scenario {
-    /// The row of a scenario that is drawn still. Others change some fields.
-    pub(super) const fn still(
-        number: u32,
-        name: &'static str,
-        group: Group,
-        breaks: &'static str,
-        make: fn(&mut Kit),
-    ) -> Self {
-        Self {
-            number: Some(number),
-            name,
-            group,
-            breaks,
-            figure: Figure::None,
-            moves: &[],
-            options: &[],
-            heavy: false,
-            make,
-        }
-    }
-
     /// The id of its scene, for [`open`](crate::open).
     pub fn id(&self) -> String {
         format!("{PREFIX}{}", self.name)

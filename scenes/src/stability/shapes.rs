@@ -11,38 +11,29 @@ use super::{
 };
 use crate::builder::arc;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Shapes, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
-    row(
+    Group::Shapes.row(
         17,
         "spot-angles",
         "Cones near 0 degrees vanish in rounding, and beyond 90 degrees a cone's box lies behind its apex too.",
         spot_angles,
     ),
-    row(
+    Group::Shapes.row(
         18,
         "rectangle-at-horizon",
         "A rectangle that is half below a surface's horizon, or in its plane, lights with what is left or not at \
          all.",
         rectangle_at_horizon,
     ),
-    row(
+    Group::Shapes.row(
         19,
         "long-rectangle",
         "A 100:1 rectangle whose range is shorter than its half length is dark at its ends if it is culled as a \
          ball of its range.",
         long_rectangle,
     ),
-    row(
+    Group::Shapes.row(
         20,
         "odd-transforms",
         "Under uneven scales, shears and mirrors, boxes and normals of models are wrong if they are only rotated.",

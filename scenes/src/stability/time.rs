@@ -5,21 +5,12 @@ use glam::Vec3;
 use super::{Figure, Group, Move, Scenario, kit::Kit};
 use crate::Aabb;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Time, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::TemporalError,
         moves: &[Move::Dolly, Move::Rotation],
-        ..row(
+        ..Group::Time.row(
             26,
             "sub-pixel-moves",
             "A light that is lost in some frames pops, although neither the camera nor the light moves by a pixel.",
@@ -28,7 +19,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         moves: &[Move::Teleport],
-        ..row(
+        ..Group::Time.row(
             27,
             "camera-teleports",
             "After a cut, lists and bounds of the last frame are those of another place.",
@@ -42,7 +33,7 @@ pub(super) const ROWS: &[Scenario] = &[
             Move::Lights("births"),
             Move::Lights("all"),
         ],
-        ..row(
+        ..Group::Time.row(
             27,
             "every-light-moves",
             "When every light moves in every frame, lists, hierarchies and orders of the last frame are stale.",
@@ -51,7 +42,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         moves: &[Move::Teleport],
-        ..row(
+        ..Group::Time.row(
             28,
             "same-frame-twice",
             "Lists in the order of atomics differ between two runs of one frame, and the last bits of the image too.",
@@ -61,7 +52,7 @@ pub(super) const ROWS: &[Scenario] = &[
     Scenario {
         figure: Figure::FrameTime,
         moves: &[Move::Teleport, Move::Rotation, Move::Lights("drift")],
-        ..row(
+        ..Group::Time.row(
             29,
             "uneven-load",
             "Frame times jump where the camera turns from an empty part to a crowded one.",
@@ -93,12 +84,7 @@ fn camera_teleports(kit: &mut Kit) {
 fn every_light_moves(kit: &mut Kit) {
     kit.hall();
     kit.scatter(220, Kit::hall_box(), (0.5, 3.0));
-    for _ in 0..40 {
-        let place = kit.point_in(Kit::hall_box());
-        let (direction, outer) = (kit.direction(), kit.range(0.3, 1.0));
-        let spot = kit.spot(place, direction, (0.6 * outer, outer), 4.0);
-        kit.lights.push(spot);
-    }
+    kit.scatter_spots(40, Kit::hall_box(), (0.3, 1.0), 0.6);
 }
 
 /// Every pose is shown in two frames in a row.

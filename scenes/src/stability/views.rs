@@ -9,24 +9,15 @@ use super::{
 };
 use crate::Lens;
 
-const fn row(
-    number: u32,
-    name: &'static str,
-    breaks: &'static str,
-    make: fn(&mut Kit),
-) -> Scenario {
-    Scenario::still(number, name, Group::Views, breaks, make)
-}
-
 /// The scenarios, by number.
 pub(super) const ROWS: &[Scenario] = &[
-    row(
+    Group::Views.row(
         21,
         "orthographic-near-0",
         "An orthographic view has a near plane at 0, where exponential slices have no beginning.",
         orthographic_near_0,
     ),
-    row(
+    Group::Views.row(
         22,
         "off-centre-window",
         "Tiles are bounded wrongly if the viewing axis is taken for the middle of the image.",
@@ -37,7 +28,7 @@ pub(super) const ROWS: &[Scenario] = &[
     ),
     Scenario {
         moves: &[Move::Rotation],
-        ..row(
+        ..Group::Views.row(
             22,
             "sub-pixel-jitter",
             "Temporal anti-aliasing moves the window by parts of a pixel, which bounds made without it do not hold.",
@@ -47,7 +38,7 @@ pub(super) const ROWS: &[Scenario] = &[
             },
         )
     },
-    row(
+    Group::Views.row(
         22,
         "viewport-offset",
         "Tiles count from the corner of the target instead of the corner of the viewport.",
@@ -56,7 +47,7 @@ pub(super) const ROWS: &[Scenario] = &[
             kit.framing(|framing| framing.before_px = [21, 13]);
         },
     ),
-    row(
+    Group::Views.row(
         23,
         "odd-size",
         "The last tile of a row is cut by the image's edge, so its bounds and its mean depth are not those of a whole \
@@ -66,13 +57,13 @@ pub(super) const ROWS: &[Scenario] = &[
             kit.framing(|framing| framing.less_px = [5, 3]);
         },
     ),
-    row(
+    Group::Views.row(
         22,
         "standard-depth",
         "Depth that is not reversed has few bits far from the eye, so distant samples move by metres.",
         standard_depth,
     ),
-    row(
+    Group::Views.row(
         24,
         "far-from-origin",
         "A thousand kilometres from a file's origin, single precision is 6 cm coarse, unless the scene moves to the \
@@ -82,7 +73,7 @@ pub(super) const ROWS: &[Scenario] = &[
             kit.origin = AWAY;
         },
     ),
-    row(
+    Group::Views.row(
         24,
         "huge-coordinates",
         "A hundred kilometres from the world's origin, rounding moves samples out of the bounds of their group.",
@@ -93,7 +84,7 @@ pub(super) const ROWS: &[Scenario] = &[
     ),
     Scenario {
         options: &["--transparent"],
-        ..row(
+        ..Group::Views.row(
             25,
             "transparent-layers",
             "Glass is lit at depths that hold no opaque surface, for which explicit bounds and sparse lists hold \
@@ -103,7 +94,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         options: &["--particles", "150"],
-        ..row(
+        ..Group::Views.row(
             25,
             "particles",
             "Particles float where no opaque surface is, so lists made from the depth of surfaces lack their lights.",
@@ -112,7 +103,7 @@ pub(super) const ROWS: &[Scenario] = &[
     },
     Scenario {
         options: &["--fog", "0.05"],
-        ..row(
+        ..Group::Views.row(
             25,
             "fog",
             "Fog is lit in the whole depth of the view, in clusters and in tiles' voids that hold no surface.",
@@ -128,12 +119,7 @@ const AWAY: DVec3 = DVec3::new(800_000.0, 1_000.0, -600_000.0);
 fn lit_hall(kit: &mut Kit) {
     kit.hall();
     kit.scatter(200, Kit::hall_box(), (0.5, 4.0));
-    for _ in 0..40 {
-        let place = kit.point_in(Kit::hall_box());
-        let (direction, outer) = (kit.direction(), kit.range(0.3, 1.2));
-        let spot = kit.spot(place, direction, (0.5 * outer, outer), 4.0);
-        kit.lights.push(spot);
-    }
+    kit.scatter_spots(40, Kit::hall_box(), (0.3, 1.2), 0.5);
 }
 
 /// The floor crosses the near plane, which holds the eye.

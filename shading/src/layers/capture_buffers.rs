@@ -8,7 +8,7 @@ use crate::probe::CAPTURED_BYTES;
 /// Bindings of `capture.wesl` in group 2.
 const KEPT_BINDING: u32 = 22;
 const COUNT_BINDING: u32 = 23;
-const DEPTH_BINDING: u32 = 24;
+const DEPTH_BINDING: u32 = 25;
 
 /// What a pass writes its samples to.
 #[derive(Debug)]

@@ -55,7 +55,7 @@ fn particles_and_fog() {
         }
     }
     let captures = ["captures"].into();
-    link("package::particles", &captures, None).check_pixels(&[19, 22, 23], &[]);
+    link("package::particles", &captures, None).check_pixels(&[19, 22, 23, 25], &[]);
     link("package::fog_light", &captures, None).check_pixels(&[17, 22, 23], &[]);
     link("package::fog_sum", &Flags::new(), None).check_pixels(&[17, 19, 20], &[]);
     link("package::fog_apply", &["fogged"].into(), None).check_pixels(&[0, 17, 18], &[]);
