@@ -5,8 +5,8 @@ use assign::{entry, storage_entry, texture, texture_entry};
 use crate::ShadowModel;
 
 /// Bindings of `shadow.wesl` in group 2.
-const ATLAS_BINDING: u32 = 25;
-const RECORDS_BINDING: u32 = 26;
+const ATLAS_BINDING: u32 = 26;
+const RECORDS_BINDING: u32 = 27;
 
 /// Shadow maps as shaders read them. Clones share them.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use super::{Flags, LOOK_UPS, link, subsets, with_areas};
 
 /// Bindings of the atlas and of the records.
-const MAPS: [u32; 2] = [25, 26];
+const MAPS: [u32; 2] = [26, 27];
 
 #[test]
 fn lighting_with_shadows_reads_the_maps() {
