@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use assign::Gpu;
 use scenes::{Scene, stability::PREFIX};
-use shading::WorldTriangles;
+use shading::{ShadowModel, WorldTriangles};
 
 use crate::{
     cli::StageArgs,
@@ -54,6 +54,8 @@ impl Bench {
             format!("{} {} {} {bounce} {seed:?}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
+                // The maps are those of other lights.
+                stage.cast_shadows(ShadowModel::None)?;
                 stage.set_up(&self.gpu, args)?;
                 self.stage.insert((key, stage))
             }

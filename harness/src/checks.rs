@@ -11,6 +11,7 @@ use crate::{
     error::HarnessError,
     painter::raster_spheres,
     results::{RefusedStrategy, ResultsError},
+    shadows::check_shadows,
     stage::Stage,
     strategy::{Method, rows},
     truth_level::TruthLevel,
@@ -47,6 +48,17 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         return Err(CliError::out_of_range("--cut", args.cut.name(), accepted));
     }
     check_reach(args.specular_reach, args.cut)?;
+    check_shadows(args.shadows, &args.stage, &args.layers)?;
+    if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
+        let accepted =
+            "left out with --pictures differing and none, which keep no image of no culling";
+        return Err(CliError::out_of_range("--against", &path.display().to_string(), accepted));
+    }
+    if args.unbounded && args.shadows.is_on() {
+        let accepted =
+            "none with --unbounded, whose lights have other ranges than those of the maps";
+        return Err(CliError::out_of_range("--shadows", &args.shadows.to_string(), accepted));
+    }
     if let Some(checks) = args.checks.filter(|_| is_still && !args.temporal) {
         let accepted =
             "left out without --path, --motion and --temporal, because all frames are the same";
@@ -318,6 +330,28 @@ mod tests {
     }
 
     #[test]
+    fn shadows_are_refused_where_there_are_no_maps() {
+        for option in [
+            "--fog 0.1",
+            "--particles 9",
+            "--motion drift",
+            "--vpls 64",
+            "--light-order gpu",
+            "--unbounded",
+        ] {
+            let line = format!("--shadows maps:4,64 {option}");
+            let error = check(&line).expect_err(option).to_string();
+            let name = option.split(' ').next().expect("a name");
+            assert!(
+                error.starts_with("--shadows is maps:4,64: ") && error.contains(name),
+                "{error}"
+            );
+            assert_eq!(check(&format!("--shadows none {option}")), Ok(()), "{option}");
+        }
+        assert_eq!(check("--shadows maps:4,64 --path --areas 0.5"), Ok(()));
+    }
+
+    #[test]
     fn lights_that_cannot_move_as_asked_are_refused() {
         for (line, refused) in [
             ("--motion drift --moved-by gpu --light-order given", "--light-order is given: "),
@@ -330,6 +364,7 @@ mod tests {
             ("--temporal --checks 1", "--checks is 1: "),
             ("--temporal --path --frames 1", "--frames is 1: "),
             ("--unbounded --cut never", "--cut is never: "),
+            ("--against truth.exr --pictures none", "--against is truth.exr: "),
             ("--specular-reach 4 --cut never", "--cut is never: "),
         ] {
             let error = check(line).expect_err(line).to_string();

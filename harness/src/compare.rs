@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use shading::{EDGE, LightBvh, ListCheck, Mode};
 
 use crate::{
+    against_image,
     bench::Bench,
     checks::{check_area_options, check_options, checked, remove_stale, served},
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::{note_faults, note_flaws},
-    drift::unsteady,
     error::HarnessError,
     machine::machine,
     measure::{Contest, Plan, Shown, Timetable, unbounded_image},
@@ -21,10 +21,10 @@ use crate::{
     moving::{Moving, lights_by_slot},
     out_folder::OutFolder,
     pictures::{Pictures, Reference, see},
-    record::{Seen, record},
+    record::{Seen, note_drift, record},
     report,
     report::listed,
-    results::{Clock, Record, RefusedStrategy, Results, Truth, TruthLevel, Untested},
+    results::{RefusedStrategy, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
@@ -43,10 +43,15 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // Check the options before a device is opened.
     check_options(args, &args.choices()?)?;
+    let truth = against_image::open(args.against.as_deref(), args.stage.size)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
-    let (results, pictures) = compare_on(&mut bench, args, command)?;
-    write(&results, &pictures, &args.out)
+    let (mut results, pictures) = compare_on(&mut bench, args, command)?;
+    let errors = match &truth {
+        Some(truth) => against_image::compare(&mut results, &args.out, truth)?,
+        None => String::new(),
+    };
+    Ok(write(&results, &pictures, &args.out)? + &errors)
 }
 
 /// Writes results and report; returns the table and where they are.
@@ -86,6 +91,7 @@ pub fn compare_on(
     stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.sample_pixels(args.msaa)?;
+    let fewer_maps = stage.cast_shadows(args.shadows)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
@@ -101,6 +107,7 @@ pub fn compare_on(
     run.follow_path();
     run.results.warnings.extend(left_out.iter().map(RefusedStrategy::words));
     run.results.refused.extend(left_out);
+    run.results.warnings.extend(fewer_maps);
     run.warn(&choices);
     remove_stale(&args.out)?;
     run.look()?;
@@ -369,24 +376,6 @@ impl Run<'_> {
         }
         Ok(())
     }
-}
-
-/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
-/// clock to raise, and the poses of a path differ in their work.
-fn note_drift(record: &mut Record) {
-    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
-        return;
-    }
-    let Some(why) = unsteady(&record.frames_ms()) else { return };
-    let drift = format!(
-        "{} in {}: its times are not steady, measure it again: {why}",
-        record.strategy,
-        record.setting.mode.name()
-    );
-    record.note = Some(match record.note.take() {
-        Some(note) => format!("{note}; {drift}"),
-        None => drift,
-    });
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

@@ -25,6 +25,7 @@ use crate::{
     cli::{CliError, ExplainArgs, LayerArgs},
     compare::DEFAULT_PATH_FRAMES,
     error::HarnessError,
+    shadows::check_shadows,
     stage::Stage,
     strategy::{BASELINE, Method},
 };
@@ -101,6 +102,7 @@ pub fn set_stage<'a>(
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
+    stage.cast_shadows(args.shadows)?;
     if args.path {
         stage.follow_path(frames);
     }
@@ -132,6 +134,7 @@ fn path_frames(gpu: &Gpu, args: &ExplainArgs) -> u32 {
 fn check(args: &ExplainArgs) -> Result<(), CliError> {
     check_motion(&args.stage)?;
     check_reach(args.specular_reach, args.cut)?;
+    check_shadows(args.shadows, &args.stage, &args.layers)?;
     let (pixel, size) = (args.pixel, args.stage.size);
     if pixel.x >= size.width || pixel.y >= size.height {
         let accepted = format!(

@@ -3,6 +3,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod advise;
+mod against_image;
 pub mod bench;
 pub mod camera;
 pub mod chart;
@@ -40,6 +41,7 @@ pub mod report;
 pub mod results;
 pub mod scenarios;
 pub mod schedule;
+mod shadows;
 pub mod sight;
 pub mod soak;
 pub mod stage;

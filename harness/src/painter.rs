@@ -15,12 +15,12 @@ pub enum Painter<'a> {
         /// The strategy.
         strategy: &'a mut dyn Assignment,
         /// Lighting with its look-up.
-        lighting: Lighting,
+        lighting: Box<Lighting>,
         /// The number of the frame, if it draws at random: its seed.
         frame_ix: Option<u32>,
     },
     /// Light volumes.
-    RasterSphere(RasterSpheres),
+    RasterSphere(Box<RasterSpheres>),
     /// Surfaces without lights.
     Clay,
 }
@@ -46,12 +46,13 @@ impl<'a> Painter<'a> {
                     stochastic: *stochastic,
                     specular_reach: stage.specular_reach,
                     suns: stage.suns,
+                    shadows: stage.shadows,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 let frame_ix = is_random.then_some(0);
-                Self::Lists { strategy: strategy.as_mut(), lighting, frame_ix }
+                Self::Lists { strategy: strategy.as_mut(), lighting: Box::new(lighting), frame_ix }
             }
-            Method::RasterSphere => Self::RasterSphere(raster_spheres(stage, cut)?),
+            Method::RasterSphere => Self::RasterSphere(Box::new(raster_spheres(stage, cut)?)),
             Method::Clay => Self::Clay,
         })
     }
@@ -161,6 +162,6 @@ fn record_lights(
 
 /// Light volumes.
 pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, HarnessError> {
-    let Stage { renderer, lights, area_model, suns, .. } = stage;
-    Ok(RasterSpheres::new(renderer, lights.kinds(), *area_model, cut, *suns)?)
+    let Stage { renderer, lights, area_model, suns, shadows, .. } = stage;
+    Ok(RasterSpheres::new(renderer, lights.kinds(), *area_model, cut, *suns, *shadows)?)
 }

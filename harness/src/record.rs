@@ -7,13 +7,14 @@ use crate::{
     choice::Choice,
     cli::{CompareArgs, LayerArgs, name_of},
     clock::clock_of,
+    drift::unsteady,
     error::HarnessError,
     image_errors::{errors, no_errors, stored},
     measure::{ListsFigures, Plan, Shown, Timed},
     moving::Moving,
     results::{
-        Errors, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record, Setting,
-        Times, WorstPixel, mean,
+        Clock, Errors, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record,
+        Setting, Times, WorstPixel, mean,
     },
     schedule::rounds,
     stage::Stage,
@@ -179,6 +180,7 @@ pub fn record(
             cut: Some(plan.cut.name().to_owned()),
             compensation: args.compensate,
             specular_reach: args.specular_reach,
+            shadows: stage.shadow_setting(),
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
             layers: layer_setting(&args.layers),
@@ -269,4 +271,22 @@ fn note(overflowed_frames: u32) -> Option<String> {
             "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
         )
     })
+}
+
+/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
+/// clock to raise, and the poses of a path differ in their work.
+pub fn note_drift(record: &mut Record) {
+    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
+        return;
+    }
+    let Some(why) = unsteady(&record.frames_ms()) else { return };
+    let drift = format!(
+        "{} in {}: its times are not steady, measure it again: {why}",
+        record.strategy,
+        record.setting.mode.name()
+    );
+    record.note = Some(match record.note.take() {
+        Some(note) => format!("{note}; {drift}"),
+        None => drift,
+    });
 }

@@ -3,7 +3,7 @@
 use assign::{Gpu, LightBuffer, LightKind, RejectedLight, Suns, View};
 use glam::DVec3;
 use scenes::{Aabb, Dielectric, Material, Pose, Scene, primary_light, scatter_particles};
-use shading::{AreaModel, LayerOptions, Renderer};
+use shading::{AreaModel, LayerOptions, Renderer, ShadowModel};
 
 use crate::{
     camera,
@@ -43,6 +43,8 @@ pub struct Stage {
     pub compensation: Option<f32>,
     /// With `--specular-reach N`, the number N.
     pub specular_reach: Option<f32>,
+    /// How lights are shadowed. The renderer has the maps.
+    pub shadows: ShadowModel,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// What makes them in every frame, if they stay on the GPU.
@@ -128,6 +130,7 @@ impl Stage {
             area_model: AreaModel::default(),
             compensation: None,
             specular_reach: None,
+            shadows: ShadowModel::None,
             vpls: None,
             bounce: None,
             vpl_maker: VplMaker::default(),

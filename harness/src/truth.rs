@@ -14,6 +14,7 @@ use shading::traced::{
 use shading::{EDGE, HdrImage, luminance};
 
 use crate::{
+    against_image,
     bench::Bench,
     checks::remove_stale,
     cli::{CliError, TruthArgs},
@@ -82,7 +83,11 @@ fn summary(image: &TruthImage) -> String {
         image.lights,
         image.width,
         image.height,
-        if image.shadows { "shadows" } else { "no shadows" },
+        match (image.shadows, image.is_separated) {
+            (false, _) => "no shadows",
+            (true, false) => "shadows",
+            (true, true) => "separated shadows",
+        },
         image.bounces,
         if image.bounces == 1 { "bounce" } else { "bounces" },
         if image.is_indirect { ", indirect light alone" } else { "" },
@@ -98,6 +103,7 @@ pub fn render(
     command: Vec<String>,
 ) -> Result<Results, HarnessError> {
     check(args)?;
+    let other = against_image::open(args.against.as_deref(), args.stage.size)?;
     let gpu = bench.gpu().clone();
     let stage = bench.stage(&args.stage)?;
     remove_stale(&args.out)?;
@@ -108,6 +114,11 @@ pub fn render(
     let notes = notes(scene.emissive_count(), args);
     drop(scene);
     let mut truth = keep(stage, args, &image, seconds)?;
+    if let Some(other) = other {
+        let (found, line) = other.compare("truth", &image.radiance);
+        say(line.trim_end());
+        truth.against_errors = found;
+    }
     if !args.shadows {
         truth.gbuffer_errors = gbuffer_errors(&gpu, stage, args, &image)?;
     }
@@ -179,7 +190,11 @@ fn trace(
     if args.indirect {
         return Ok(bounce());
     }
-    let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
+    let direct = match (args.shadows, args.separated) {
+        (false, _) => Transport::Unshadowed,
+        (true, false) => Transport::Direct,
+        (true, true) => Transport::Separated,
+    };
     let image = traced(direct, "direct light");
     match args.bounces {
         0 => Ok(image),
@@ -257,11 +272,13 @@ fn keep(
         standard_error: over_mean(error),
         shadows: args.shadows,
         bounces: args.bounces,
+        is_separated: args.separated,
         is_indirect: args.indirect,
         is_matte: args.matte_bounces,
         samples: args.samples,
         sample_seed: Some(args.sample_seed.unwrap_or(args.stage.seed)),
         gbuffer_errors: Errors::new(),
+        against_errors: Errors::new(),
         seconds,
     })
 }

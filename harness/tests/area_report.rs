@@ -44,11 +44,13 @@ fn truth() -> TruthImage {
         standard_error: 0.0004,
         shadows: false,
         bounces: 0,
+        is_separated: false,
         is_indirect: false,
         is_matte: false,
         samples: 64,
         sample_seed: Some(1),
         gbuffer_errors: [("rel_mse".to_owned(), Some(3.25e-5))].into(),
+        against_errors: Default::default(),
         seconds: 2.5,
     }
 }

@@ -100,7 +100,7 @@ fn evaluate(
     let surface = gpu.storage("surface of a pixel", surface_bytes)?;
     let stages = wgpu::ShaderStages::COMPUTE;
     let images = GBufferInputs::of_scene(&renderer.scene);
-    let inputs = LightingInputs::new(gpu, options)?;
+    let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
     let mut layout = vec![
         uniform_entry(PIXEL_BINDING, stages),
         storage_entry(ENTRIES_BINDING, stages, true),

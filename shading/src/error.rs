@@ -71,6 +71,12 @@ pub enum ShadingError {
         /// The layers of the renderer.
         drawn: LayerKinds,
     },
+    /// The prepared lights are not those that shadow maps were drawn for.
+    #[error(
+        "the shadow maps were drawn for other lights: draw them again with Renderer::cast_shadows, and create a new \
+         pass. Lights that move, and lights that the GPU makes or orders, have none"
+    )]
+    StaleShadows,
     /// A sample's look-up returned another number of lights than before.
     #[error(
         "two look-ups of the same frame returned different lights: {strategy} must return the same"

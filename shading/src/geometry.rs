@@ -73,7 +73,7 @@ pub struct SceneGpu {
     pub(crate) sheets: Vec<Sheet>,
     pub(crate) materials: Materials,
     /// Layouts of bind group 2, one for each of [`Bound::ALL`].
-    layouts: [wgpu::BindGroupLayout; 4],
+    layouts: [wgpu::BindGroupLayout; 8],
     pub(crate) instances: wgpu::Buffer,
 }
 

@@ -5,6 +5,7 @@
 //!
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
+//! | `shadow-maps` | once, with a [`ShadowModel`] | triangles | depth from the lights |
 //! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
@@ -21,6 +22,8 @@
 //! bit. [`traced`] renders the true image, including shadows and bounces.
 
 mod area_model;
+mod before_lighting;
+mod bound_maps;
 mod contributions;
 mod dump;
 mod error;
@@ -51,6 +54,8 @@ mod renderer;
 mod resolve;
 mod rsm;
 mod shaders;
+mod shadow_model;
+mod shadows;
 mod shared_passes;
 mod targets;
 pub mod traced;
@@ -58,6 +63,7 @@ mod truth;
 mod world_triangles;
 
 pub use area_model::{ACCEPTED_AREA_MODELS, AreaModel, MAX_AREA_SAMPLES};
+pub use before_lighting::record_before_lighting;
 pub use contributions::{PixelLight, PixelSurface, light_pixel};
 pub use dump::{list_of_pixel, visit_lists};
 pub use error::ShadingError;
@@ -80,9 +86,13 @@ pub use operations::{Operations, Terms, count_operations};
 pub use pixel_group::{GroupVolume, PixelGroup, PixelGroupsRecord, groups_of_pixel};
 pub use probe::{Samples, probe, record_for_probe};
 pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
-pub use renderer::{Renderer, record_before_lighting};
+pub use renderer::Renderer;
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
+pub use shadow_model::{
+    ACCEPTED_SHADOW_MODELS, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX, ShadowModel, TAP_COUNTS,
+};
+pub use shadows::ShadowFigures;
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

@@ -81,10 +81,20 @@ impl Lighting {
         if !mode.is_forward() {
             renderer.check_one_sample("deferred shading")?;
         }
+        if options.shadows.is_on() && renderer.layers.is_some() {
+            return Err(AssignError::Parameter {
+                field: "shadow model".into(),
+                value: options.shadows.to_string(),
+                accepted:
+                    "none with transparent surfaces, particles and fog, which maps do not shade"
+                        .into(),
+            }
+            .into());
+        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;
-        let inputs = LightingInputs::new(gpu, options)?;
+        let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
         let kind = match mode {
             Mode::Deferred | Mode::DeferredIds => {
                 Kind::Deferred(Deferred::new(renderer, lists, needs.models, inputs)?)
@@ -93,7 +103,7 @@ impl Lighting {
                 let has_depth = mode.has_prepass(needs);
                 let pipelines = RasterPipelines::new(
                     gpu,
-                    &renderer.frame,
+                    renderer.frame.layout(),
                     &renderer.scene,
                     renderer.orientation,
                     RasterPass::Forward { lists, has_depth },
@@ -197,7 +207,7 @@ impl Deferred {
             .options
             .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
             .strategy(lists.lookup.module);
-        // SAFETY: its loops count up to the number of suns, or end with the strategy's look-up, which
+        // SAFETY: its loops count up to the number of suns or maps, or end with the strategy's look-up, which
         // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do,
         // and the strategy's author guarantees it of its own.
         #[allow(unsafe_code, reason = "its loops end")]

@@ -1,10 +1,11 @@
 //! The inputs of lighting besides surfaces, lights and lists: its numbers, the suns if there are
-//! any, and the table of linearly transformed cosines if the model of area lights uses it.
+//! any, the table of linearly transformed cosines if the model of area lights uses it, and shadow
+//! maps if lights cast shadows.
 
-use assign::{Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
+use assign::{AssignError, Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 
-use crate::{LightingOptions, ShadingError, ltc};
+use crate::{LightingOptions, ShadingError, bound_maps::BoundMaps, ltc};
 
 /// Binding of `LightingUniform` in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
@@ -67,24 +68,29 @@ impl From<&Suns> for SunsRecord {
 }
 
 /// Which resources a set of options binds besides its numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Bound {
     pub(crate) table: bool,
     pub(crate) suns: bool,
+    pub(crate) shadows: bool,
 }
 
 impl Bound {
     /// Every combination, each at its [`index`](Self::index).
-    pub(crate) const ALL: [Self; 4] = [
-        Self { table: false, suns: false },
-        Self { table: true, suns: false },
-        Self { table: false, suns: true },
-        Self { table: true, suns: true },
+    pub(crate) const ALL: [Self; 8] = [
+        Self { table: false, suns: false, shadows: false },
+        Self { table: true, suns: false, shadows: false },
+        Self { table: false, suns: true, shadows: false },
+        Self { table: true, suns: true, shadows: false },
+        Self { table: false, suns: false, shadows: true },
+        Self { table: true, suns: false, shadows: true },
+        Self { table: false, suns: true, shadows: true },
+        Self { table: true, suns: true, shadows: true },
     ];
 
     /// Its index in [`ALL`](Self::ALL).
     pub(crate) fn index(self) -> usize {
-        usize::from(self.table) + 2 * usize::from(self.suns)
+        usize::from(self.table) + 2 * usize::from(self.suns) + 4 * usize::from(self.shadows)
     }
 }
 
@@ -94,11 +100,21 @@ pub(crate) struct LightingInputs {
     uniform: wgpu::Buffer,
     table: Option<wgpu::Buffer>,
     suns: Option<wgpu::Buffer>,
+    shadows: Option<BoundMaps>,
 }
 
 impl LightingInputs {
-    /// Uploads the resources that the options need.
-    pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
+    /// Uploads the resources that the options need. With shadows, `maps` are those of the renderer.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] if the options ask for other shadows than those of the maps, and for shadows of suns.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        options: LightingOptions,
+        maps: Option<&BoundMaps>,
+    ) -> Result<Self, ShadingError> {
+        let shadows = bound_maps(options, maps)?;
         let uniform = gpu.uniform("lighting", size_of::<LightingRecord>() as u64);
         options.area.check()?;
         let area_samples = options.area.samples();
@@ -127,7 +143,7 @@ impl LightingInputs {
             gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&record));
             buffer
         });
-        Ok(Self { uniform, table, suns })
+        Ok(Self { uniform, table, suns, shadows })
     }
 
     /// Layout entries of group 2, for the stages that light.
@@ -137,19 +153,30 @@ impl LightingInputs {
     ) -> impl Iterator<Item = wgpu::BindGroupLayoutEntry> {
         let table = bound.table.then(|| storage_entry(LTC_BINDING, stages, true));
         let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
-        [uniform_entry(LIGHTING_BINDING, stages)].into_iter().chain(table).chain(suns)
+        let shadows = bound.shadows.then(|| BoundMaps::layout(stages));
+        let shadows = shadows.into_iter().flatten();
+        [uniform_entry(LIGHTING_BINDING, stages)]
+            .into_iter()
+            .chain(table)
+            .chain(suns)
+            .chain(shadows)
     }
 
     /// Bind group entries of group 2.
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
         let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
-        [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns)
+        let shadows = self.shadows.iter().flat_map(BoundMaps::entries);
+        [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
     }
 
     /// Which resources it holds.
     pub(crate) fn bound(&self) -> Bound {
-        Bound { table: self.table.is_some(), suns: self.suns.is_some() }
+        Bound {
+            table: self.table.is_some(),
+            suns: self.suns.is_some(),
+            shadows: self.shadows.is_some(),
+        }
     }
 }
 
@@ -157,6 +184,31 @@ impl LightingOptions {
     /// Which resources their shader binds.
     pub(crate) fn bound(&self) -> Bound {
         let table = self.kinds.areas && self.area.table().is_some();
-        Bound { table, suns: !self.suns.is_empty() }
+        Bound { table, suns: !self.suns.is_empty(), shadows: self.shadows.is_on() }
+    }
+}
+
+/// The maps that the options ask for.
+fn bound_maps(
+    options: LightingOptions,
+    maps: Option<&BoundMaps>,
+) -> Result<Option<BoundMaps>, AssignError> {
+    if !options.shadows.is_on() {
+        return Ok(None);
+    }
+    options.shadows.check()?;
+    let refuse = |accepted: String| {
+        let (field, value) = ("shadow model".into(), options.shadows.to_string());
+        Err(AssignError::Parameter { field, value, accepted })
+    };
+    if !options.suns.is_empty() {
+        return refuse("none with suns, which have no maps".into());
+    }
+    match maps {
+        None => refuse("none before Renderer::cast_shadows".into()),
+        Some(maps) if maps.model() != options.shadows => {
+            refuse(format!("{}, the model of the renderer's maps, or none", maps.model()))
+        }
+        Some(maps) => Ok(Some(maps.clone())),
     }
 }

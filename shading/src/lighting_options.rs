@@ -3,7 +3,7 @@
 use assign::{LightKinds, Shader, Suns};
 use serde::{Deserialize, Serialize};
 
-use crate::AreaModel;
+use crate::{AreaModel, ShadowModel};
 
 /// How the lights of a list are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,6 +40,10 @@ pub struct LightingOptions {
     /// Suns light every sample in addition to its list. Without suns, none of their code is
     /// compiled and nothing is bound for them.
     pub suns: Suns,
+    /// How lights are shadowed. Other than [`ShadowModel::None`], it must be the model of the renderer's maps
+    /// ([`Renderer::cast_shadows`](crate::Renderer::cast_shadows)), without suns and without layers. Off, nothing is
+    /// compiled or bound for it.
+    pub shadows: ShadowModel,
 }
 
 /// How a light's fall-off ends at its range.
@@ -80,7 +84,8 @@ impl LightingOptions {
             .flag("compensation", self.compensation.is_some())
             .flag("stochastic", self.stochastic.is_some())
             .flag("specular_reach", self.specular_reach.is_some())
-            .flag("suns", !self.suns.is_empty());
+            .flag("suns", !self.suns.is_empty())
+            .flag("shadows", self.shadows.is_on());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }

@@ -7,7 +7,7 @@ use assign::{
     AssignError, Gpu, Light, LightBuffer, LightKinds, LightReader, LightShape, MAX_VERTICES,
 };
 
-use crate::{AreaModel, LightingOptions, ShadingError};
+use crate::{AreaModel, LightingOptions, ShadingError, ShadowModel};
 
 /// The properties of a set of lights that decide the number of rounds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -78,6 +78,18 @@ impl LightTotals {
         self.count + walks + terms
     }
 
+    /// The rounds of looking up a sample in all of the shadow maps: one for each map, row and texel, and one to end
+    /// each loop.
+    fn rounds_of_shadows(&self, shadows: ShadowModel) -> u64 {
+        if !shadows.is_on() {
+            return 0;
+        }
+        let taps = u64::from(shadows.taps());
+        let side = u64::from(shadows.taps().isqrt());
+        let maps = self.areas * u64::from(shadows.maps()) + (self.count - self.areas);
+        self.count + maps * (2 + 2 * side + taps)
+    }
+
     /// Checks that an adapter can light a sample by all of the lights, because any list may hold
     /// all of them.
     pub(crate) fn check(
@@ -87,6 +99,7 @@ impl LightTotals {
         reader: LightReader<'_>,
     ) -> Result<(), ShadingError> {
         let rounds = self.rounds(options.area) + rounds_of_suns(options);
+        let rounds = rounds + self.rounds_of_shadows(options.shadows);
         self.check_rounds(gpu, rounds + reader.loop_rounds(self.count))
     }
 
@@ -109,7 +122,7 @@ impl LightTotals {
                 value: format!("{}, {rounds} rounds of loops per sample", self.count),
                 accepted: format!(
                     "at most {most} rounds on {}, which ends longer loops: fewer lights, fewer of \
-                     them area lights, or fewer samples",
+                     them area lights, or fewer samples or shadow maps",
                     gpu.info.name
                 ),
             }
@@ -172,5 +185,10 @@ mod tests {
         assert_eq!(rounds(&[area], AreaModel::LtcTable), 1 + 10 + 12);
         assert_eq!(rounds(&[area], AreaModel::Mrp), 1 + 10 + 6);
         assert_eq!(rounds(&[area], AreaModel::MonteCarlo { samples: 10 }), 1 + 10 + 120);
+        let totals = LightTotals::new(&[point, area]);
+        assert_eq!(totals.rounds_of_shadows(ShadowModel::None), 0);
+        // Ten maps of three rows of three texels.
+        let shadows = ShadowModel::Maps { maps: 9, px: 64, taps: 9 };
+        assert_eq!(totals.rounds_of_shadows(shadows), 2 + 10 * (1 + 4 + 3 * 4));
     }
 }

@@ -95,7 +95,7 @@ pub fn count_operations(
     let shown = gpu.uniform("exposure", 16);
     gpu.queue.write_buffer(&shown, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
     let stages = wgpu::ShaderStages::COMPUTE;
-    let inputs = LightingInputs::new(gpu, options)?;
+    let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
     let mut layout =
         vec![storage_entry(COUNTS_BINDING, stages, false), uniform_entry(EXPOSURE_BINDING, stages)];
     layout.extend(LightingInputs::layout(inputs.bound(), stages));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use assign::{DepthMapping, FrameBindings, Gpu, Shader, View};
+use assign::{DepthMapping, Gpu, Shader, View};
 
 use crate::{
     LightingOptions, ShadingError,
@@ -22,6 +22,11 @@ use crate::{
 pub(crate) enum RasterPass<'a> {
     /// Depth only.
     Depth,
+    /// Depth only, of both sides of all triangles, moved away from the light: a face of a shadow map.
+    ShadowMap {
+        /// How far depth is moved, in greatest differences of depth between neighbouring texels.
+        slopes: f32,
+    },
     /// The G-buffer, drawn where the depth is equal.
     GBuffer {
         /// Whether it holds the index of the model.
@@ -58,14 +63,17 @@ impl RasterPass<'_> {
     /// Whether the pass tests for the nearest depth and writes it. Otherwise it draws where the
     /// depth is equal.
     fn writes_depth(self) -> bool {
-        matches!(self, Self::Depth | Self::Forward { has_depth: false, .. })
+        matches!(
+            self,
+            Self::Depth | Self::ShadowMap { .. } | Self::Forward { has_depth: false, .. }
+        )
     }
 
     /// Samples per pixel of its targets. Only forward modes draw several, and they need no G-buffer.
     fn samples(self, orientation: Orientation) -> u32 {
         match self {
             Self::Depth | Self::Forward { .. } | Self::Clay => orientation.samples,
-            Self::GBuffer { .. } | Self::ModelIds | Self::Sheets(_) => 1,
+            Self::GBuffer { .. } | Self::ModelIds | Self::ShadowMap { .. } | Self::Sheets(_) => 1,
         }
     }
 
@@ -77,6 +85,23 @@ impl RasterPass<'_> {
             }
             DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
             DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
+        }
+    }
+
+    /// The sides of triangles that are left out. Both sides block light.
+    fn cull_mode(self, key: DrawKey) -> Option<wgpu::Face> {
+        let is_culled = !key.material.double_sided && !matches!(self, Self::ShadowMap { .. });
+        is_culled.then_some(wgpu::Face::Back)
+    }
+
+    /// What is added to depth.
+    fn depth_bias(self) -> wgpu::DepthBiasState {
+        match self {
+            // Reversed depth falls with distance.
+            Self::ShadowMap { slopes } => {
+                wgpu::DepthBiasState { slope_scale: -slopes, ..Default::default() }
+            }
+            _ => wgpu::DepthBiasState::default(),
         }
     }
 
@@ -129,9 +154,10 @@ pub(crate) struct RasterPipelines {
 }
 
 impl RasterPipelines {
+    /// Compiles the pipelines. `frame` is the layout of bind group 0.
     pub(crate) fn new(
         gpu: &Gpu,
-        frame: &FrameBindings,
+        frame: &wgpu::BindGroupLayout,
         scene: &SceneGpu,
         orientation: Orientation,
         pass: RasterPass<'_>,
@@ -169,7 +195,7 @@ impl Shown {
 pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Shader<'a> {
     let material = key.material;
     let is = |wanted: &str| match pass {
-        RasterPass::Depth => wanted == "depth",
+        RasterPass::Depth | RasterPass::ShadowMap { .. } => wanted == "depth",
         RasterPass::GBuffer { .. } => wanted == "gbuffer",
         RasterPass::Forward { .. } => wanted == "forward",
         RasterPass::Clay => wanted == "clay",
@@ -214,7 +240,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
 
 fn pipeline(
     gpu: &Gpu,
-    frame: &FrameBindings,
+    frame: &wgpu::BindGroupLayout,
     scene: &SceneGpu,
     orientation: Orientation,
     pass: RasterPass<'_>,
@@ -227,7 +253,7 @@ fn pipeline(
         // A fragment shades the pixel's centre, which may lie off its triangle.
         shader = shader.looks_up_anywhere();
     }
-    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, or end with
+    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns or maps, or end with
     // the strategy's look-up, which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of
     // `assign` do, and the strategy's author guarantees it of its own. The other passes have no loop.
     #[allow(unsafe_code, reason = "its loops end")]
@@ -240,12 +266,12 @@ fn pipeline(
         RasterPass::Sheets(SheetPass { lists, layout, .. }) => {
             (lists.map(|lists| lists.lookup.layout()), layout)
         }
-        _ => (None, scene.layout(Bound { table: false, suns: false })),
+        _ => (None, scene.layout(Bound::default())),
     };
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
-        bind_group_layouts: &[Some(frame.layout()), lists, Some(scene_layout), textures],
+        bind_group_layouts: &[Some(frame), lists, Some(scene_layout), textures],
         immediate_size: 0,
     });
     let without_colors = [Some(vertex_layout())];
@@ -269,7 +295,7 @@ fn pipeline(
             } else {
                 wgpu::FrontFace::Cw
             },
-            cull_mode: (!key.material.double_sided).then_some(wgpu::Face::Back),
+            cull_mode: pass.cull_mode(key),
             ..Default::default()
         },
         depth_stencil: Some(wgpu::DepthStencilState {
@@ -277,7 +303,7 @@ fn pipeline(
             depth_write_enabled: Some(pass.writes_depth()),
             depth_compare: Some(pass.depth_compare(orientation.depth)),
             stencil: Default::default(),
-            bias: Default::default(),
+            bias: pass.depth_bias(),
         }),
         multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
         fragment: fragment.map(|entry_point| wgpu::FragmentState {
@@ -306,8 +332,10 @@ fn entry_points(
     shown: Shown,
 ) -> (&'static str, Option<&'static str>, Vec<Option<wgpu::TextureFormat>>) {
     match pass {
-        RasterPass::Depth if key.material.mask => ("vertex_surface", Some("fragment_mask"), vec![]),
-        RasterPass::Depth => ("vertex_depth", None, vec![]),
+        RasterPass::Depth | RasterPass::ShadowMap { .. } if key.material.mask => {
+            ("vertex_surface", Some("fragment_mask"), vec![])
+        }
+        RasterPass::Depth | RasterPass::ShadowMap { .. } => ("vertex_depth", None, vec![]),
         RasterPass::GBuffer { ids } => {
             let emissive = shown.emissive.then_some(EMISSIVE_FORMAT);
             let ids = ids.then_some(MODEL_FORMAT);

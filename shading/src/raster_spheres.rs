@@ -12,7 +12,7 @@ use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::{
-    AreaModel, Cut, LightingOptions, Renderer, ShadingError,
+    AreaModel, Cut, LightingOptions, Renderer, ShadingError, ShadowModel,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
@@ -53,8 +53,10 @@ impl RasterSpheres {
         area: AreaModel,
         cut: Cut,
         suns: Suns,
+        shadows: ShadowModel,
     ) -> Result<Self, ShadingError> {
-        let options = LightingOptions { kinds, area, cut, suns, ..LightingOptions::default() };
+        let options =
+            LightingOptions { kinds, area, cut, suns, shadows, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
         if renderer.layers.is_some() {
             return Err(AssignError::Unsupported {
@@ -74,7 +76,7 @@ impl RasterSpheres {
             .into());
         }
         let images = GBufferInputs::of_scene(&renderer.scene);
-        let inputs = LightingInputs::new(gpu, options)?;
+        let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
         let stages = wgpu::ShaderStages::FRAGMENT;
         let mut entries = images.layout(stages);
         entries.extend(LightingInputs::layout(inputs.bound(), stages));

@@ -1,19 +1,18 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
-use assign::{
-    AssignError, Assignment, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, View,
-};
+use assign::{AssignError, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, View};
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
 
 use crate::{
-    LightingOptions, Mode, ShadingError,
+    LightingOptions, ShadingError,
     geometry::SceneGpu,
     layers::{LayerKinds, LayerOptions, LayerScene},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
     raster::{Orientation, RasterPipelines},
     resolve::{Resolve, SAMPLES},
+    shadows::ShadowMaps,
     shared_passes::SharedPasses,
     targets::Targets,
 };
@@ -25,7 +24,7 @@ pub struct Renderer {
     pub(crate) frame: FrameBindings,
     pub(crate) scene: SceneGpu,
     /// Bind group 2 of the passes without lighting.
-    scene_group: wgpu::BindGroup,
+    pub(crate) scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
     pub(crate) orientation: Orientation,
     /// The prepared lights.
@@ -37,6 +36,8 @@ pub struct Renderer {
     shared: SharedPasses,
     /// What is drawn over the opaque surfaces.
     pub(crate) layers: Option<LayerScene>,
+    /// Maps of the lights' shadows.
+    pub(crate) shadows: Option<ShadowMaps>,
     /// The pass that makes the image of several samples per pixel.
     pub(crate) resolve: Option<Resolve>,
 }
@@ -54,7 +55,7 @@ impl Renderer {
         let models = scene.models.iter().map(model_box).collect();
         let scene = SceneGpu::new(gpu, scene)?;
         let targets = Targets::new(gpu, view, &scene, 1)?;
-        let inputs = LightingInputs::new(gpu, LightingOptions::default())?;
+        let inputs = LightingInputs::new(gpu, LightingOptions::default(), None)?;
         let orientation = Orientation::of_view(view, 1);
         Ok(Self {
             shared: SharedPasses::new(gpu, &frame, &scene, orientation)?,
@@ -69,6 +70,7 @@ impl Renderer {
             scene,
             targets,
             layers: None,
+            shadows: None,
             resolve: None,
         })
     }
@@ -99,6 +101,7 @@ impl Renderer {
             surface_bounds: self.surface_bounds,
             shared,
             layers: None,
+            shadows: None,
             resolve: None,
         })
     }
@@ -210,6 +213,9 @@ impl Renderer {
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
         self.lights = LightTotals::of_buffer(lights);
+        if let Some(maps) = &self.shadows {
+            maps.check_lights(lights)?;
+        }
         if let Some(layers) = &mut self.layers {
             layers.prepare(&self.gpu, view, self.surface_bounds)?;
         }
@@ -248,7 +254,7 @@ impl Renderer {
         self.record_gbuffer_as(view, true, passes);
     }
 
-    fn record_gbuffer_as(&self, view: &View, ids: bool, passes: &mut dyn Passes) {
+    pub(crate) fn record_gbuffer_as(&self, view: &View, ids: bool, passes: &mut dyn Passes) {
         if self.resolve.is_some() {
             return;
         }
@@ -360,27 +366,6 @@ impl Renderer {
             stencil_ops: None,
         }
     }
-}
-
-/// Records the passes that a mode draws before lighting, then the strategy's own passes.
-pub fn record_before_lighting(
-    renderer: &Renderer,
-    mode: Mode,
-    strategy: &mut dyn Assignment,
-    frame: &Frame<'_>,
-    passes: &mut dyn Passes,
-) {
-    let needs = strategy.needs();
-    if mode.has_prepass(needs) {
-        renderer.record_depth(frame.view, passes);
-    }
-    if mode.has_gbuffer(needs) {
-        renderer.record_gbuffer_as(frame.view, mode == Mode::DeferredIds, passes);
-    }
-    if mode.has_model_pass(needs) {
-        renderer.record_model_ids(frame.view, passes);
-    }
-    strategy.record(frame, passes);
 }
 
 fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {

@@ -29,6 +29,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "stochastic",
         "specular_reach",
         "suns",
+        "shadows",
         "area_point",
         "area_mrp",
         "area_mrp_published",
@@ -71,6 +72,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::ltc_table", include_str!("shaders/ltc_table.wesl"))
         .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
         .module("package::suns", include_str!("shaders/suns.wesl"))
+        .module("package::shadow", include_str!("shaders/shadow.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))
         .module("package::scene", include_str!("shaders/scene.wesl"))
         .module("package::material", include_str!("shaders/material.wesl"))

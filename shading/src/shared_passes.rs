@@ -25,7 +25,7 @@ impl SharedPasses {
         scene: &SceneGpu,
         orientation: Orientation,
     ) -> Result<Self, ShadingError> {
-        let pipelines = |pass| RasterPipelines::new(gpu, frame, scene, orientation, pass);
+        let pipelines = |pass| RasterPipelines::new(gpu, frame.layout(), scene, orientation, pass);
         Ok(Self {
             depth: pipelines(RasterPass::Depth)?,
             gbuffer: pipelines(RasterPass::GBuffer { ids: false })?,

@@ -14,7 +14,7 @@ use assign_model::PerModel;
 use glam::{Vec2, Vec3};
 use shading::{
     AreaModel, Cut, HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE,
-    RasterSpheres, Renderer, probe, record_before_lighting, record_for_probe,
+    RasterSpheres, Renderer, ShadowModel, probe, record_before_lighting, record_for_probe,
 };
 
 /// Points, spots, one light around the camera, and one that reaches in from beyond any far plane.
@@ -163,8 +163,15 @@ fn raster_spheres_show_the_image_of_no_culling() {
             ..LightingOptions::default()
         };
         let reference = image_of(&gpu, &mut renderer, &view, &lights, Mode::Deferred, options);
-        let spheres =
-            RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default(), cut, suns).unwrap();
+        let spheres = RasterSpheres::new(
+            &renderer,
+            lights.kinds(),
+            AreaModel::default(),
+            cut,
+            suns,
+            ShadowModel::None,
+        )
+        .unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };

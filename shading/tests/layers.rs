@@ -15,8 +15,8 @@ use glam::{Mat4, Vec3, Vec4};
 use scenes::{Aabb, Material, Scene, scatter_particles};
 use shading::{
     AreaModel, Cut, HdrImage, LayerOptions, LayerSamples, LightBvh, Lighting, LightingOptions,
-    ListsTruth, Mode, RasterSpheres, Renderer, ShadingError, probe, record_before_lighting,
-    visit_layer_lists,
+    ListsTruth, Mode, RasterSpheres, Renderer, ShadingError, ShadowModel, probe,
+    record_before_lighting, visit_layer_lists,
 };
 
 /// The showcase with three sheets of glass in front of it: two tinted ones that are blended, and a clear one that
@@ -313,8 +313,9 @@ fn what_serves_only_opaque_surfaces_refuses_layers() {
         assert!(error.contains(&id) && error.contains("at any depth"), "{error}");
     }
     let (area, suns) = (AreaModel::default(), Suns::default());
-    let error =
-        RasterSpheres::new(&renderer, lights.kinds(), area, Cut::default(), suns).unwrap_err();
+    let shadows = ShadowModel::None;
+    let error = RasterSpheres::new(&renderer, lights.kinds(), area, Cut::default(), suns, shadows)
+        .unwrap_err();
     assert!(error.to_string().contains("layers over the opaque surfaces"), "{error}");
     let options = LightingOptions { compensation: Some(10.0), ..LightingOptions::default() };
     let strategy = Everything::new(&gpu).unwrap();

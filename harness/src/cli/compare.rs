@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use assign::{FrustumTests, LightSource, MAX_SPECULAR_REACH};
 use clap::{Args, ValueEnum};
-use shading::{AreaModel, Cut};
+use shading::{AreaModel, Cut, ShadowModel};
 
 use super::{
     headings::{BOUNCE, CHECKS, LISTS, SHADING, TIMING},
@@ -81,6 +81,14 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with_all = ["compensate", "operations"])]
     pub specular_reach: Option<f64>,
 
+    /// How lights are shadowed
+    ///
+    /// With maps:N,PX each area light has shadow maps from N of its points, 1, 4, 9, 25, 81 or 289, with faces of PX
+    /// texels on a side, even, 32 to 4096; each other light has one map. pcfK compares K texels of a map, 1, 4, 9, 16
+    /// or 25. The maps are drawn once, so the lights must stand still.
+    #[arg(long, value_name = "none|maps:N,PX[,pcfK]", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
+    pub shadows: ShadowModel,
+
     /// Even out the brightness of virtual point lights: multiply each sample by N / (number of lights that
     /// light it)
     ///
@@ -128,6 +136,10 @@ pub struct CompareArgs {
     /// Also compare each image with that of lights without a range: the error of their ranges
     #[arg(long, help_heading = CHECKS, hide_short_help = true)]
     pub unbounded: bool,
+
+    /// Also compare the images with a truth image: an EXR file, such as truth.exr of `truth`
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "motion"], help_heading = CHECKS, hide_short_help = true)]
+    pub against: Option<PathBuf>,
 
     /// Count the light operations of every strategy that has lists
     ///

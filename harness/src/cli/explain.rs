@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use assign::MAX_SPECULAR_REACH;
 use clap::Args;
-use shading::{AreaModel, Cut, Mode};
+use shading::{AreaModel, Cut, Mode, ShadowModel};
 
 use super::{
     compare::CUTS,
@@ -76,6 +76,10 @@ pub struct ExplainArgs {
     /// Let specular terms reach up to N of their lights' ranges, as for `compare`
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, MAX_SPECULAR_REACH.into()), help_heading = SHADING, hide_short_help = true, conflicts_with = "compensate")]
     pub specular_reach: Option<f64>,
+
+    /// How lights are shadowed, as for `compare`
+    #[arg(long, value_name = "none|maps:N,PX[,pcfK]", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
+    pub shadows: ShadowModel,
 
     /// Even out the brightness of virtual point lights, as for `compare`
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, 1e9), help_heading = BOUNCE, hide_short_help = true)]

@@ -96,6 +96,11 @@ fn an_error_names_the_option_the_value_and_the_range() {
         ),
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
         ("--area-model", &["LTC", "disc", "monte-carlo:0"], shading::ACCEPTED_AREA_MODELS),
+        (
+            "--shadows",
+            &["on", "maps", "maps:5,64", "maps:4,64,pcf8"],
+            shading::ACCEPTED_SHADOW_MODELS,
+        ),
         ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
         ("--diffuse-share", &["0", "1.01", "NaN"], "a number above 0 and at most 1"),
         ("--replicate", &["0", "65", "1.5"], "a whole number from 1 to 64"),

@@ -18,6 +18,13 @@ pub struct TruthArgs {
     #[arg(long, display_order = 6)]
     pub shadows: bool,
 
+    /// With --shadows: multiply the light of each light without shadows by the share of it that a surface sees
+    ///
+    /// The exact form of what shadow maps approximate. Its distance to the image without this option is the error
+    /// of separating shadows from shading.
+    #[arg(long, display_order = 7, requires = "shadows", conflicts_with = "indirect")]
+    pub separated: bool,
+
     /// Surfaces that light may meet before it meets the visible one, 0 to 16
     ///
     /// From 1 on, surfaces that emit light also light other surfaces.
@@ -41,6 +48,10 @@ pub struct TruthArgs {
     /// Images of different seeds have independent noise.
     #[arg(long, display_order = 11, value_name = "N", allow_hyphen_values = true, value_parser = values::seed)]
     pub sample_seed: Option<u64>,
+
+    /// Also compare the image with another truth image of the same size: an EXR file
+    #[arg(long, display_order = 12, value_name = "FILE")]
+    pub against: Option<PathBuf>,
 
     /// GPU to use, by any part of its name
     #[arg(long, display_order = 12, value_name = "NAME", value_parser = values::text)]

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use assign::{AssignError, FrustumTests, LightOrder};
 
-use shading::{ACCEPTED_AREA_MODELS, AreaModel};
+use shading::{ACCEPTED_AREA_MODELS, ACCEPTED_SHADOW_MODELS, AreaModel, ShadowModel};
 
 use crate::digits::grouped;
 
@@ -181,6 +181,10 @@ pub(super) fn part(text: &str) -> Result<f64, String> {
 
 pub(super) fn area_model(text: &str) -> Result<AreaModel, String> {
     text.parse().map_err(|_| ACCEPTED_AREA_MODELS.to_owned())
+}
+
+pub(super) fn shadow_model(text: &str) -> Result<ShadowModel, String> {
+    text.parse().map_err(|_| ACCEPTED_SHADOW_MODELS.to_owned())
 }
 
 pub(super) fn table_size(text: &str) -> Result<usize, String> {

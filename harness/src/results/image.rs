@@ -36,7 +36,7 @@ pub struct ImageFigures {
     /// Errors against lights without a range, by metric.
     #[serde(default)]
     pub unbounded_errors: Errors,
-    /// Errors against the truth image of a study, by metric. They come from the model of area lights, never
+    /// Errors against the truth image of a study or of `--against`, by metric. They come from shading, never
     /// from culling.
     #[serde(default)]
     pub truth_errors: Errors,

@@ -66,6 +66,9 @@ pub struct Setting {
     /// With `--specular-reach`: the most ranges that a specular term reaches; absent if it ends with the diffuse term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specular_reach: Option<f64>,
+    /// With `--shadows`: the shadow maps; absent without shadows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<ShadowSetting>,
     /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, `gpuN` for a sort on the GPU in every
     /// Nth frame, or `gpuN%` for one as soon as boxes may have grown by N percent.
     #[serde(default)]
@@ -121,6 +124,21 @@ pub struct LayerSetting {
     pub particles: u64,
     /// The rate at which fog scatters light, per metre; absent without fog.
     pub fog_per_m: Option<f64>,
+}
+
+/// The shadow maps of the lights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShadowSetting {
+    /// The model that was asked for, such as `maps:9,512`.
+    pub model: String,
+    /// Maps for each area light. Fewer than the model's if more did not fit the atlas.
+    pub maps_per_area_light: u32,
+    /// Maps of all lights.
+    pub maps: u32,
+    /// Faces of all maps.
+    pub faces: u32,
+    /// Width and height of the atlas, texels of 4 bytes.
+    pub atlas_px: [u32; 2],
 }
 
 /// How lights move.

@@ -40,6 +40,7 @@ impl Results {
                 &mut record.note,
             ];
             all.extend(known.into_iter().flatten());
+            all.extend(record.setting.shadows.iter_mut().map(|shadows| &mut shadows.model));
             let motion = record.setting.motion.iter_mut();
             all.extend(motion.flat_map(|motion| [&mut motion.law, &mut motion.moved_by]));
             if let Some(vpls) = &mut record.indirect {

@@ -33,6 +33,9 @@ pub struct TruthImage {
     pub standard_error: f64,
     /// Whether surfaces cast shadows.
     pub shadows: bool,
+    /// Whether each light's radiance without shadows is multiplied by the share of the light that a surface sees.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_separated: bool,
     /// Surfaces that light may meet before it meets the visible one.
     pub bounces: u32,
     /// Whether the light that comes straight from lights is left out.
@@ -50,6 +53,9 @@ pub struct TruthImage {
     /// against this truth. Empty with shadows, and in older results, whose truths come from the G-buffer.
     #[serde(default, skip_serializing_if = "Errors::is_empty")]
     pub gbuffer_errors: Errors,
+    /// With `--against`: errors against another truth image, by metric.
+    #[serde(default, skip_serializing_if = "Errors::is_empty")]
+    pub against_errors: Errors,
     /// Render time on the CPU, seconds.
     pub seconds: f64,
 }

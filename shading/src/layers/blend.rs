@@ -87,7 +87,7 @@ impl Blend {
             let layout = gpu.bind_group_layout("sheets", &entries);
             let pass = SheetPass { lists, layout: &layout, fogged: fragments.has_fog() };
             let pass = RasterPass::Sheets(pass);
-            Some((RasterPipelines::new(gpu, frame, scene, *orientation, pass)?, layout))
+            Some((RasterPipelines::new(gpu, frame.layout(), scene, *orientation, pass)?, layout))
         } else {
             None
         };

@@ -117,6 +117,39 @@ impl<'a> SeenEmitter<'a> {
         }
     }
 
+    /// The whole reflected radiance times the share of the emitter's area that the sample sees, from `points` of it.
+    /// Parts below the sample's horizon do not count: this is what shadow maps approximate.
+    pub(super) fn separated(
+        &self,
+        scene: &TracedScene<'_>,
+        points: u32,
+        numbers: Numbers,
+    ) -> Estimate {
+        let SurfaceSample { position, surface, to_eye, .. } = self.sample;
+        let whole = light_contribution(self.light, *position, surface, *to_eye);
+        if whole == DVec3::ZERO {
+            return Estimate::default();
+        }
+        let [x, y] = self.emitter.half_axes().map(Vec3::as_dvec3);
+        Estimate::of_shares(points, numbers, whole, |point| {
+            let [u, v] = point.at(0).map(|t: f64| 2.0 * t - 1.0);
+            let offset = self.center + x * u + y * v;
+            let counts = surface.normal.dot(offset) > 0.0 && self.is_inside(offset);
+            if !counts {
+                return (DVec3::ZERO, DVec3::ZERO);
+            }
+            let is_seen = scene.sees(self.sample, *position + offset);
+            (if is_seen { DVec3::ONE } else { DVec3::ZERO }, DVec3::ONE)
+        })
+    }
+
+    /// Whether the direction to a place hits the emitter.
+    fn is_inside(&self, offset: DVec3) -> bool {
+        let count = self.emitter.vertices().len();
+        let turn = |ix: usize| self.vertex(ix).cross(self.vertex((ix + 1) % count)).dot(offset);
+        (0..count).all(|ix| turn(ix) >= 0.0) || (0..count).all(|ix| turn(ix) <= 0.0)
+    }
+
     /// The light of the whole emitter, if its middle is visible.
     fn by_middle(&self, scene: &TracedScene<'_>) -> DVec3 {
         let SurfaceSample { position, surface, to_eye, .. } = self.sample;
@@ -143,10 +176,7 @@ impl<'a> SeenEmitter<'a> {
     /// The point of the emitter that a ray from the sample hits, world space. The ray must pass all
     /// edges on the same side. This test needs no tolerance, however large or far the emitter is.
     fn point_along(&self, direction: DVec3) -> Option<DVec3> {
-        let count = self.emitter.vertices().len();
-        let turn = |ix: usize| self.vertex(ix).cross(self.vertex((ix + 1) % count)).dot(direction);
-        let is_inside =
-            (0..count).all(|ix| turn(ix) >= 0.0) || (0..count).all(|ix| turn(ix) <= 0.0);
+        let is_inside = self.is_inside(direction);
         let distance_m = self.normal.dot(self.vertex(0)) / self.normal.dot(direction);
         (distance_m > 0.0 && is_inside).then(|| self.sample.position + direction * distance_m)
     }

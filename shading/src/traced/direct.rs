@@ -28,6 +28,38 @@ pub fn direct_light(
     }
 }
 
+/// What surfaces leave of the radiance that one light adds to a sample, if they hid its diffuse and its specular light
+/// alike: the radiance without shadows times the share of the light that the sample sees. A share of an area light is
+/// sampled by `area_samples` points. It is the best that any model of visible shares can show.
+pub fn separated_light(
+    light: &Light,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+    area_samples: u32,
+    numbers: Numbers,
+) -> Estimate {
+    match &light.shape {
+        LightShape::Area(emitter) => SeenEmitter::new(light, emitter, sample)
+            .map_or(Estimate::default(), |seen| seen.separated(scene, area_samples, numbers)),
+        _ => Estimate::exact(exact_light(light, sample, Some(scene))),
+    }
+}
+
+/// Radiance that all suns add to a sample, and then all lights in ascending index, each as [`separated_light`].
+pub(super) fn separated_radiance(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+    area_samples: u32,
+    numbers: Numbers,
+) -> Estimate {
+    let suns = Estimate::exact(direct_suns(lights, sample, Some(scene)));
+    reaching(lights, sample).into_iter().fold(suns, |sum, light_ix| {
+        let light = &lights.lights()[light_ix as usize];
+        sum + separated_light(light, sample, scene, area_samples, numbers.part(light_ix.into()))
+    })
+}
+
 /// Radiance that needs no samples: that of a light without an emitter, or without shadows.
 fn exact_light(
     light: &Light,

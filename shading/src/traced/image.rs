@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{
     AREA_SAMPLES, Estimate, Numbers, Paths, SurfaceSample, TracedScene, bounced_light,
-    direct_radiance,
+    direct::separated_radiance, direct_radiance,
 };
 use crate::{HdrImage, LightBvh, ShadingError};
 
@@ -22,6 +22,9 @@ pub enum Transport {
     Unshadowed,
     /// The same with shadows.
     Direct,
+    /// The same with separated shadows: each light without shadows times the share of it that the sample sees, as
+    /// [`separated_light`](super::separated_light).
+    Separated,
     /// Only indirect light with shadows: light of lights by way of at least one other surface, and
     /// light of emitting surfaces on others.
     Bounce,
@@ -136,6 +139,10 @@ fn pixel_of(
     let shadows = match settings.transport {
         Transport::Unshadowed => None,
         Transport::Direct => Some(scene),
+        Transport::Separated => {
+            let samples = settings.area_samples;
+            return emitted + separated_radiance(lights, sample, scene, samples, numbers);
+        }
         Transport::Bounce => {
             return bounced_light(lights, sample, scene, settings.paths, numbers);
         }

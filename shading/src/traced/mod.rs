@@ -17,6 +17,7 @@
 //! |---|---|---|
 //! | points, spots, suns | exact | exact: one ray each |
 //! | rectangles, polygons | quadrature, to 1e-4 | directions to the emitter, sampled |
+//! | the same, shadows separated | | points of the emitter, sampled |
 //! | bounces, and surfaces that emit | | paths, sampled |
 //!
 //! Samples are points of Owen-scrambled Sobol sequences ([`Numbers`]). Every sampled value has the
@@ -53,7 +54,7 @@ mod texture;
 mod triangles;
 
 pub use bounce::{MAX_BOUNCES, Paths, bounced_light};
-pub use direct::{AREA_SAMPLES, direct_light, direct_radiance, direct_sun};
+pub use direct::{AREA_SAMPLES, direct_light, direct_radiance, direct_sun, separated_light};
 pub use estimate::Estimate;
 pub use gbuffer::GBufferSamples;
 pub use image::{Transport, TruthImage, TruthSettings, truth_image};

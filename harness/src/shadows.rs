@@ -1,0 +1,84 @@
+//! The shadow maps of a stage.
+
+use shading::ShadowModel;
+
+use crate::{
+    cli::{CliError, LayerArgs, StageArgs},
+    error::HarnessError,
+    messages::say,
+    results::ShadowSetting,
+    stage::Stage,
+};
+
+impl Stage {
+    /// Makes shadow maps for its lights and draws them, off the clock: lights and scene stand still. Returns a warning
+    /// if area lights got fewer maps than asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`CliError`] in a scene with suns, and the errors of
+    /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows).
+    pub fn cast_shadows(&mut self, model: ShadowModel) -> Result<Option<String>, HarnessError> {
+        self.shadows = ShadowModel::None;
+        if model.is_on() && !self.suns.is_empty() {
+            let accepted = "none in a scene with suns, which have no shadow maps";
+            return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
+        }
+        let Some(figures) = self.renderer.cast_shadows(&self.lights, model)? else {
+            return Ok(None);
+        };
+        self.shadows = model;
+        let [width, height] = figures.atlas_px;
+        say(format!(
+            "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn once and not timed",
+            figures.maps,
+            figures.faces,
+            figures.atlas_bytes().div_ceil(1 << 20)
+        ));
+        let warning = figures.fell_back().then(|| {
+            let warning = format!(
+                "--shadows {model}: only {} maps for each area light fit an atlas of this device",
+                figures.maps_per_area_light
+            );
+            say(format!("warning  {warning}"));
+            warning
+        });
+        Ok(warning)
+    }
+
+    /// Its shadow maps, as records store them.
+    pub fn shadow_setting(&self) -> Option<ShadowSetting> {
+        self.renderer.shadow_figures().map(|figures| ShadowSetting {
+            model: figures.model.to_string(),
+            maps_per_area_light: figures.maps_per_area_light,
+            maps: figures.maps,
+            faces: figures.faces,
+            atlas_px: figures.atlas_px,
+        })
+    }
+}
+
+/// Refuses shadows of lights without maps, and on what maps do not shade.
+pub(crate) fn check_shadows(
+    model: ShadowModel,
+    stage: &StageArgs,
+    layers: &LayerArgs,
+) -> Result<(), CliError> {
+    if !model.is_on() {
+        return Ok(());
+    }
+    let refuse = |accepted| Err(CliError::out_of_range("--shadows", &model.to_string(), accepted));
+    if *layers != LayerArgs::default() {
+        return refuse("none with --transparent, --particles and --fog, which maps do not shade");
+    }
+    if stage.motion.motion.is_some() {
+        return refuse("none with --motion, because maps are drawn once, before the frames");
+    }
+    if stage.bounce.vpls > 0 {
+        return refuse("none with --vpls, whose lights the CPU does not know");
+    }
+    if stage.light_order().is_on_gpu() {
+        return refuse("none with --light-order gpu, gpuN and gpuN%, which the CPU does not know");
+    }
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! Shadow maps as a user runs them: what records keep, and how far images are from the truth.
+
+use std::{path::Path, process::Command};
+
+use harness::results::{Record, Results, ShadowSetting};
+
+fn run(arguments: &[&str]) -> String {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output().expect("starts");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Three rectangles that shine into the court of the atrium.
+const VIEW: [&str; 14] = [
+    "--scene",
+    "atrium",
+    "--size",
+    "48x27",
+    "--lights",
+    "3",
+    "--areas",
+    "1",
+    "--outlines",
+    "rectangles",
+    "--radii",
+    "equal",
+    "--radius-scale",
+    "14.4",
+];
+
+fn truth(out: &Path, more: &[&str]) -> Results {
+    let out_text = out.to_str().expect("UTF-8");
+    run(&[&["truth", "--shadows", "--out", out_text], &VIEW[..], more].concat());
+    Results::read(&out.join("results.json")).expect("results")
+}
+
+/// The records of a comparison with a truth image.
+fn compared(out: &Path, truth: &str, shadows: &str) -> (Vec<Record>, String) {
+    let out_text = out.to_str().expect("UTF-8");
+    let options = ["compare", "--strategies", "None,T-E,SC-E", "--mode", "both", "--frames", "1"];
+    let checks = ["--warmup", "0", "--truth", "none", "--against", truth, "--shadows", shadows];
+    let printed = run(&[&options[..], &VIEW[..], &checks[..], &["--out", out_text]].concat());
+    (Results::read(&out.join("results.json")).expect("results").records, printed)
+}
+
+#[test]
+fn records_keep_the_model_and_maps_come_close_to_the_truth() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let exact = truth(&folder.join("truth"), &["--samples", "256"]);
+    let path = folder.join("truth").join("truth.exr");
+    let path = path.to_str().expect("UTF-8");
+    let separated = truth(&folder.join("separated"), &["--separated", "--against", path]);
+    let [exact, separated] = [exact, separated].map(|file| file.truth_image.expect("an image"));
+    assert!(!exact.is_separated && separated.is_separated && separated.shadows);
+    assert!(exact.against_errors.is_empty());
+    let separation = separated.against_errors["rel_mse"].expect("finite");
+
+    let (plain, _) = compared(&folder.join("plain"), path, "none");
+    let (shadowed, printed) = compared(&folder.join("shadowed"), path, "maps:9,128");
+    let line = format!("against  {path}: None in deferred: flip ");
+    assert!(printed.contains(&line), "{printed}");
+    let expected = ShadowSetting {
+        model: "maps:9,128".into(),
+        maps_per_area_light: 9,
+        maps: 27,
+        faces: 27 * 5,
+        atlas_px: [9 * 128, 9 * 128],
+    };
+    assert_eq!((plain.len(), shadowed.len()), (6, 6));
+    for (plain, shadowed) in plain.iter().zip(&shadowed) {
+        assert_eq!(plain.setting.shadows, None);
+        assert_eq!(shadowed.setting.shadows.as_ref(), Some(&expected));
+        // No strategy shows other shadows than no culling.
+        let mode = shadowed.setting.mode;
+        assert_eq!(shadowed.image.differing_channels, Some(0), "{} {mode:?}", shadowed.strategy);
+    }
+    let error = |records: &[Record]| records[0].image.truth_errors["rel_mse"].expect("finite");
+    let (without, with) = (error(&plain), error(&shadowed));
+    println!("relMSE without shadows {without}, with maps {with}, separation {separation}");
+    assert!(with < 0.2 * without, "{with} with maps, {without} without");
+    assert!(separation < with, "{separation} with exact shares, {with} with maps");
+}

@@ -1,0 +1,46 @@
+//! What lighting reads of shadow maps: the atlas, and the records of lights and maps.
+
+use assign::{entry, storage_entry, texture, texture_entry};
+
+use crate::ShadowModel;
+
+/// Bindings of `shadow.wesl` in group 2.
+const ATLAS_BINDING: u32 = 26;
+const RECORDS_BINDING: u32 = 27;
+
+/// Shadow maps as shaders read them. Clones share them.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundMaps {
+    model: ShadowModel,
+    atlas: wgpu::TextureView,
+    records: wgpu::Buffer,
+}
+
+impl BoundMaps {
+    pub(crate) fn new(model: ShadowModel, atlas: wgpu::TextureView, records: wgpu::Buffer) -> Self {
+        Self { model, atlas, records }
+    }
+
+    /// The model of the maps.
+    pub(crate) fn model(&self) -> ShadowModel {
+        self.model
+    }
+
+    /// The depths of all maps.
+    pub(crate) fn atlas(&self) -> &wgpu::TextureView {
+        &self.atlas
+    }
+
+    /// Layout entries of group 2, for the stages that light.
+    pub(crate) fn layout(stages: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 2] {
+        [
+            texture_entry(ATLAS_BINDING, stages, wgpu::TextureSampleType::Depth),
+            storage_entry(RECORDS_BINDING, stages, true),
+        ]
+    }
+
+    /// Bind group entries of group 2.
+    pub(crate) fn entries(&self) -> [wgpu::BindGroupEntry<'_>; 2] {
+        [texture(ATLAS_BINDING, &self.atlas), entry(RECORDS_BINDING, &self.records)]
+    }
+}

@@ -1,0 +1,56 @@
+//! A renderer with shadow maps.
+
+use assign::{EncoderPasses, LightBuffer, Passes};
+
+use super::{ShadowFigures, ShadowMaps};
+use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
+
+impl Renderer {
+    /// Makes shadow maps for lights that stand still, and draws them, in a submission of its own. It holds for frames
+    /// that are prepared afterwards, with [`Lighting`](crate::Lighting) that is made afterwards. Frames with other
+    /// lights are refused until it is called again. [`ShadowModel::None`] removes the maps.
+    ///
+    /// Returns what was made; `None` without shadows. If the maps that the model asks for do not fit the largest atlas
+    /// of the device, all area lights get fewer, and [`ShadowFigures::fell_back`] says so.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`](assign::AssignError::Unsupported) for lights that the GPU moves, makes or orders,
+    /// [`AssignError::Parameter`](assign::AssignError::Parameter) for faulty models and if not even one map for each
+    /// light fits, and [`AssignError::OutOfMemory`](assign::AssignError::OutOfMemory). The renderer then has no maps.
+    pub fn cast_shadows(
+        &mut self,
+        lights: &LightBuffer,
+        model: ShadowModel,
+    ) -> Result<Option<ShadowFigures>, ShadingError> {
+        // The old atlas makes room for the new one.
+        self.shadows = None;
+        if !model.is_on() {
+            return Ok(None);
+        }
+        let maps = ShadowMaps::new(&self.gpu, &self.scene, lights, model)?;
+        let figures = maps.figures();
+        self.shadows = Some(maps);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.record_shadow_maps(&mut EncoderPasses { encoder: &mut encoder });
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(Some(figures))
+    }
+
+    /// Records the pass `shadow-maps`, which draws all maps again; nothing without maps.
+    pub fn record_shadow_maps(&self, passes: &mut dyn Passes) {
+        if let Some(maps) = &self.shadows {
+            maps.record(&self.scene, &self.scene_group, passes);
+        }
+    }
+
+    /// What was made for the present shadows; `None` without any.
+    pub fn shadow_figures(&self) -> Option<ShadowFigures> {
+        self.shadows.as_ref().map(ShadowMaps::figures)
+    }
+
+    /// The maps as lighting reads them.
+    pub(crate) fn shadow_maps(&self) -> Option<&BoundMaps> {
+        self.shadows.as_ref().map(ShadowMaps::bound)
+    }
+}

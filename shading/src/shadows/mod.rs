@@ -1,0 +1,300 @@
+//! Shadow maps: how far light comes from points of each light, drawn before the frames that read them.
+//!
+//! # The idea
+//!
+//! A light's radiance at a sample is that without shadows times a *visible share*, the weighted share of the light's
+//! points that the sample sees (Dobetsberger 2025, equations 6.1 and 6.2). The share depends on the light, the
+//! position and the normal only. So all strategies get the same share, and their images stay comparable bit for bit.
+//!
+//! 1. [`points`] chooses the points: one for lights that have a position, the corners of subdivided quads for
+//!    rectangles.
+//! 2. [`plan`] gives each point the faces of a cube, half a cube or a cone, and each face its place in one atlas. If
+//!    the maps do not fit, all area lights get fewer.
+//! 3. [`ShadowMaps::record`] draws the depth of all triangles into every face, from both sides, because both sides of
+//!    a triangle block light in the [truth](crate::traced). Alpha masks keep their holes.
+//! 4. `shadow.wesl` looks a sample up in all maps of a light. Points below the sample's horizon do not count: the
+//!    light without shadows leaves them out already.
+//!
+//! # The two offsets
+//!
+//! A texel holds the depth at its centre, and a look-up reads the texel that the sample falls into. A lit surface would
+//! be dark where the centre shows a part of it, or of a surface beside it, that is nearer. Let `r` be the distance from
+//! a sample to the farthest texel centre that is read, as a tangent. Both offsets follow from it; nothing is tuned.
+//!
+//! *The sample's plane.* The sample is moved along its normal, by
+//!
+//! ```text
+//! offset = depth * r * s / (1 - r * s * a)
+//! ```
+//!
+//! with `a` and `s` the cosine and the sine between the normal and the axis of the face. The moved sample then lies in
+//! front of the plane through the sample, seen along the ray of each texel. So no surface behind this plane hides it:
+//! neither its own, nor that around a convex edge.
+//!
+//! *The caster's plane.* The rasteriser moves the depth of each triangle away from the light, by what its plane changes
+//! over the distance `r` (`slopes` times the greatest difference of neighbouring texels). Each texel then holds a depth
+//! behind the triangle's plane at the sample. So no plane with the sample in front of it hides the sample, such as the
+//! wall beside it.
+//!
+//! Both move a plane sideways by about a texel, whatever its slope. So light cannot pass a wall that is thicker than
+//! two texels, `4 depth / px`, or as many more as the filter is wide. The offset of a sample follows the shading
+//! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
+//!
+//! # Cost
+//!
+//! Maps hold while lights and scene stand still, so they are drawn once, before the frames. Shading reads
+//! `maps * taps` texels per light and sample. A map of an area light takes `3 px^2` texels of 4 bytes if it is
+//! one-sided, and `6 px^2` otherwise.
+//!
+//! # Where it fails
+//!
+//! Few maps show as many hard shadows. Texels are `2 depth / px` wide, so distant shadows are coarse. A shadow caster
+//! thinner than a texel casts no or too wide a shadow. The share multiplies diffuse and specular light alike, so a
+//! highlight whose part of the emitter is hidden stays visible: the separation error.
+
+mod cast;
+mod plan;
+mod points;
+
+use assign::{AssignError, Gpu, Light, LightBuffer, Passes, ViewUniform};
+use bytemuck::{Zeroable, bytes_of, cast_slice};
+
+use crate::{
+    ShadingError, ShadowModel,
+    bound_maps::BoundMaps,
+    geometry::SceneGpu,
+    raster::{Orientation, RasterPass, RasterPipelines},
+    targets::DEPTH_FORMAT,
+};
+
+use plan::{Face, Plan};
+
+/// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
+const MOST_ATLAS_PX: u32 = 1 << 15;
+
+/// Storage buffers that a shader with lists and shadows may bind: lights and lists 6, materials, the table of area
+/// lights, and the records of maps.
+const STORAGE_BUFFERS: u32 = 9;
+
+/// What was made for a shadow model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowFigures {
+    /// The model that was asked for.
+    pub model: ShadowModel,
+    /// Maps for each area light. Fewer than asked for if more did not fit the atlas.
+    pub maps_per_area_light: u32,
+    /// Maps of all lights.
+    pub maps: u32,
+    /// Faces of all maps.
+    pub faces: u32,
+    /// Width and height of the atlas, texels.
+    pub atlas_px: [u32; 2],
+}
+
+impl ShadowFigures {
+    /// Bytes of the atlas on the GPU.
+    pub fn atlas_bytes(&self) -> u64 {
+        self.atlas_px.map(u64::from).iter().product::<u64>() * 4
+    }
+
+    /// Whether area lights got fewer maps than asked for.
+    pub fn fell_back(&self) -> bool {
+        self.maps_per_area_light < self.model.maps()
+    }
+}
+
+/// The shadow maps of a scene's lights.
+#[derive(Debug)]
+pub(crate) struct ShadowMaps {
+    figures: ShadowFigures,
+    /// The lights that the maps are for, by slot.
+    lights: Vec<Light>,
+    faces: Vec<Face>,
+    pipelines: RasterPipelines,
+    views: wgpu::BindGroup,
+    /// Bytes from one face's view to the next.
+    view_stride: u32,
+    bound: BoundMaps,
+}
+
+impl ShadowMaps {
+    /// Plans the maps of `lights` and allocates them.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] for lights whose slots the CPU does not know, and [`AssignError::Parameter`] if
+    /// not even one map per light fits an atlas.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        scene: &SceneGpu,
+        lights: &LightBuffer,
+        model: ShadowModel,
+    ) -> Result<Self, ShadingError> {
+        check_device(gpu)?;
+        if lights.order().is_on_gpu() || lights.live_count().is_some() {
+            return Err(AssignError::Unsupported {
+                strategy: format!("shadow model {model}"),
+                asked: "lights that the GPU moves, makes or orders".into(),
+                reason: "the CPU plans the maps, and must know the lights and their order".into(),
+            }
+            .into());
+        }
+        let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
+        let plan = Plan::new(lights.lights(), model, most_px)?;
+        let figures = ShadowFigures {
+            model,
+            maps_per_area_light: plan.maps,
+            maps: plan.map_count,
+            faces: plan.faces.len() as u32,
+            atlas_px: plan.size,
+        };
+        let records_bytes: &[u8] = cast_slice(&plan.records);
+        let records = gpu.storage("shadow records", records_bytes.len() as u64)?;
+        gpu.queue.write_buffer(&records, 0, records_bytes);
+        let atlas = gpu.allocate("the atlas of shadow maps", figures.atlas_bytes(), || {
+            atlas(gpu, plan.size)
+        })?;
+        let (views, layout, view_stride) = views(gpu, &plan.faces)?;
+        let pipelines = RasterPipelines::new(
+            gpu,
+            &layout,
+            scene,
+            Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
+            RasterPass::ShadowMap { slopes: plan.slopes },
+        )?;
+        Ok(Self {
+            figures,
+            lights: lights.lights().to_vec(),
+            faces: plan.faces,
+            pipelines,
+            views,
+            view_stride,
+            bound: BoundMaps::new(model, atlas, records),
+        })
+    }
+
+    pub(crate) fn figures(&self) -> ShadowFigures {
+        self.figures
+    }
+
+    /// What lighting reads.
+    pub(crate) fn bound(&self) -> &BoundMaps {
+        &self.bound
+    }
+
+    /// Refuses lights other than those that the maps were made for.
+    pub(crate) fn check_lights(&self, lights: &LightBuffer) -> Result<(), ShadingError> {
+        let is_same = !lights.order().is_on_gpu()
+            && lights.live_count().is_none()
+            && lights.lights() == self.lights;
+        if is_same { Ok(()) } else { Err(ShadingError::StaleShadows) }
+    }
+
+    /// Records the pass `shadow-maps`: the depth of all triangles in every face.
+    pub(crate) fn record(
+        &self,
+        scene: &SceneGpu,
+        scene_group: &wgpu::BindGroup,
+        passes: &mut dyn Passes,
+    ) {
+        let descriptor = wgpu::RenderPassDescriptor {
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: self.bound.atlas(),
+                // Nothing is infinitely far.
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        };
+        passes.render("shadow-maps", &descriptor, &mut |pass| {
+            pass.set_bind_group(2, scene_group, &[]);
+            for (ix, face) in (0..).zip(&self.faces) {
+                let ([x, y], [width, height]) = (face.origin, face.size);
+                pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+                pass.set_scissor_rect(x, y, width, height);
+                pass.set_bind_group(0, &self.views, &[ix * self.view_stride]);
+                scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
+            }
+        });
+    }
+}
+
+fn check_device(gpu: &Gpu) -> Result<(), AssignError> {
+    let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
+    if has >= STORAGE_BUFFERS {
+        return Ok(());
+    }
+    Err(AssignError::Limit {
+        strategy: "shading with shadow maps".into(),
+        limit: "max_storage_buffers_per_shader_stage",
+        needs: STORAGE_BUFFERS.into(),
+        has: has.into(),
+    })
+}
+
+fn atlas(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadow maps"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// The views of all faces in one buffer, bound at an offset for each face: bind group 0 of the pass, its layout and
+/// the bytes from view to view.
+fn views(
+    gpu: &Gpu,
+    faces: &[Face],
+) -> Result<(wgpu::BindGroup, wgpu::BindGroupLayout, u32), AssignError> {
+    let size = size_of::<ViewUniform>();
+    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+    let stride = (size as u32).next_multiple_of(alignment.max(1));
+    let mut bytes = vec![0; stride as usize * faces.len().max(1)];
+    for (slot, face) in bytes.chunks_mut(stride as usize).zip(faces) {
+        let view = ViewUniform {
+            world_to_view: face.world_to_view.to_cols_array_2d(),
+            view_to_clip: face.view_to_clip.to_cols_array_2d(),
+            ..ViewUniform::zeroed()
+        };
+        slot[..size].copy_from_slice(bytes_of(&view));
+    }
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    let buffer = gpu.buffer("views of shadow maps", bytes.len() as u64, usage)?;
+    gpu.queue.write_buffer(&buffer, 0, &bytes);
+    let layout = gpu.bind_group_layout(
+        "shadow maps",
+        &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: wgpu::BufferSize::new(size as u64),
+            },
+            count: None,
+        }],
+    );
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadow maps"),
+        layout: &layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &buffer,
+                offset: 0,
+                size: wgpu::BufferSize::new(size as u64),
+            }),
+        }],
+    });
+    Ok((group, layout, stride))
+}

@@ -1,0 +1,34 @@
+//! The shaders of shadow maps, and shaders without any.
+
+use super::{Flags, LOOK_UPS, link, subsets, with_areas};
+
+/// Bindings of the atlas and of the records.
+const MAPS: [u32; 2] = [26, 27];
+
+#[test]
+fn lighting_with_shadows_reads_the_maps() {
+    for flags in with_areas(subsets(&["spots", "specular_reach", "hard_cut"])) {
+        let shadowed: Flags = flags.iter().copied().chain(["shadows"]).collect();
+        let forward = |flags: &Flags| flags.iter().copied().chain(["forward"]).collect::<Flags>();
+        for look_up in LOOK_UPS {
+            for (root, with, without) in [
+                ("package::deferred", shadowed.clone(), flags.clone()),
+                ("package::geometry", forward(&shadowed), forward(&flags)),
+            ] {
+                let used = link(root, &with, Some(look_up)).used(2);
+                assert!(
+                    MAPS.iter().all(|binding| used.contains(binding)),
+                    "{root} {with:?}: {used:?}"
+                );
+                let plain = link(root, &without, Some(look_up));
+                assert!(!plain.source.contains("shadow"), "{root} {without:?} has code of shadows");
+                let rest: Vec<u32> = used.into_iter().filter(|b| !MAPS.contains(b)).collect();
+                assert_eq!(rest, plain.used(2), "{root} {with:?}: other bindings");
+            }
+        }
+        for root in ["package::contributions", "package::raster_spheres"] {
+            let used = link(root, &shadowed, None).used(2);
+            assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root}: {used:?}");
+        }
+    }
+}
