@@ -31,10 +31,10 @@ pub(super) const ROWS: &[Scenario] = &[
         kit.lights.push(light);
     }),
     Group::LightData.row(13, "count-31", "One light less than a word of bits.", |kit| {
-        count(kit, 31, (2.0, 5.0))
+        count(kit, 31, (2.0, 5.0));
     }),
     Group::LightData.row(13, "count-33", "One light more than a word of bits.", |kit| {
-        count(kit, 33, (2.0, 5.0))
+        count(kit, 33, (2.0, 5.0));
     }),
     Scenario {
         heavy: true,
