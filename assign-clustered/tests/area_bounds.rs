@@ -46,6 +46,7 @@ fn entries(gpu: &Gpu, bounds: Bounds, area_bounds: AreaBounds, lights: &[Light])
     strategy.record(&frame, &mut EncoderPasses { encoder: &mut encoder });
     gpu.queue.submit([encoder.finish()]);
     let lists = strategy.lists().snapshot(gpu).unwrap();
+    assert_eq!(lists.counters.overflowed_groups, 0, "only groups without samples are skipped");
     let groups = (0..strategy.lists().group_count()).filter(|group| !lists.is_all_lights(*group));
     groups.map(|group| lists.entries_of(group).unwrap().len() as u64).sum()
 }

@@ -171,17 +171,28 @@ fn tiles_without_surfaces_read_all_lights() {
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
     let light = assign::Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
     let lights = LightBuffer::new(&gpu, &[light; 3]).unwrap();
-    let mut strategy = tiled(Bounds::Explicit, "16x16", CullSettings::default())(&gpu).unwrap();
-    for (depth, is_empty) in [(0.05, false), (view.depth_clear(), true), (0.05, false)] {
-        let depth = conformance::flat_depth(&gpu, [64, 48], depth);
-        let frame = Frame::new(&view, &lights).with_depth(&depth);
-        strategy.prepare(&gpu, &frame).unwrap();
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        strategy.record(&frame, &mut assign::EncoderPasses { encoder: &mut encoder });
-        gpu.queue.submit([encoder.finish()]);
-        let lists = strategy.lists().snapshot(&gpu).unwrap();
-        assert!((0..12).all(|tile| lists.list(tile).unwrap().count == 3), "{lists:?}");
-        assert!((0..12).all(|tile| lists.is_all_lights(tile) == is_empty), "{lists:?}");
-        assert_eq!(lists.counters.occupied_groups, if is_empty { 0 } else { 12 });
+    for depths in [
+        TileDepths::Explicit,
+        TileDepths::ExplicitAtOnce,
+        TileDepths::HalfZ,
+        TileDepths::ModifiedHalfZ,
+        TileDepths::Sliced,
+    ] {
+        let mut strategy = tiled(depths, "16x16", CullSettings::default())(&gpu).unwrap();
+        for (depth, occupied) in [(0.05, 12), (view.depth_clear(), 0), (0.05, 12)] {
+            let depth = conformance::flat_depth(&gpu, [64, 48], depth);
+            let frame = Frame::new(&view, &lights).with_depth(&depth);
+            strategy.prepare(&gpu, &frame).unwrap();
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            strategy.record(&frame, &mut assign::EncoderPasses { encoder: &mut encoder });
+            gpu.queue.submit([encoder.finish()]);
+            let lists = strategy.lists().snapshot(&gpu).unwrap();
+            let groups = strategy.lists().group_count();
+            assert!((0..groups).all(|group| lists.list(group).unwrap().count == 3), "{lists:?}");
+            // The far halves of flat tiles hold no sample.
+            let read_all = (0..groups).filter(|group| lists.is_all_lights(*group)).count() as u32;
+            assert_eq!(groups - read_all, occupied, "{depths:?}");
+            assert_eq!(lists.counters.occupied_groups, occupied, "{depths:?}");
+        }
     }
 }

@@ -148,7 +148,8 @@ impl<'a> Lookup<'a> {
     /// Samples may lie anywhere that the frame's [`SampleDomain`](crate::SampleDomain) allows: a look-up that no list
     /// serves reads all lights ([`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere)). Shaders of opaque
     /// surfaces save that check with [`wgsl_at_surfaces`](Self::wgsl_at_surfaces). For fewer kinds of lights, or for the
-    /// subgroup operations of compute shaders, call [`Shader::wgsl`](crate::Shader::wgsl).
+    /// subgroup operations of compute shaders, call [`Shader::wgsl`](crate::Shader::wgsl). That text looks up anywhere
+    /// only after [`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere).
     ///
     /// # Errors
     ///

@@ -28,7 +28,8 @@ pub enum SampleDomain {
     /// and may lie in front of or behind all depths of the buffer.
     NearSurfaces,
     /// At these surfaces, and at any depth between the near plane and the surface in the same pixel, as for
-    /// transparent surfaces and particles. In a pixel without a surface, at any depth.
+    /// transparent surfaces and particles. In a pixel without a surface, at any depth. With several samples per pixel,
+    /// fragments may also lie beyond the near or the far plane; look-ups anywhere then read all lights.
     InFront,
     /// At any depth inside the view, also behind surfaces, as for fog whose froxels cover several pixels.
     AnyDepth,
@@ -207,7 +208,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Whether samples may lie beyond the ends of the view: fragments of several samples per pixel may lie in front of the
-    /// near plane, but not behind the eye. `strategy` is the id of what extends its groups from depth 0 to infinity.
+    /// near plane, but not behind the eye. `strategy` is the id that the error names.
     ///
     /// # Errors
     ///

@@ -1,7 +1,8 @@
 //! What a wrapper leaves to the strategy that it wraps.
 
 /// Defines the named methods of [`Assignment`](crate::Assignment) as those of the field `inner`. A wrapper names what it
-/// leaves alone and writes only what it changes. `lists` stands for `lists_mut` too.
+/// forwards, and writes what it changes. `lists` stands for `lists_mut` too. Methods with a default body, such as
+/// `specular_reach`, keep that default unless they are named.
 #[macro_export]
 macro_rules! leave_to_inner {
     (@needs) => {
@@ -12,6 +13,16 @@ macro_rules! leave_to_inner {
     (@is_view_bound) => {
         fn is_view_bound(&self) -> bool {
             self.inner.is_view_bound()
+        }
+    };
+    (@updates_groups) => {
+        fn updates_groups(&self) -> bool {
+            self.inner.updates_groups()
+        }
+    };
+    (@specular_reach) => {
+        fn specular_reach(&self) -> f32 {
+            self.inner.specular_reach()
         }
     };
     (@compile) => {

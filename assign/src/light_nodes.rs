@@ -115,14 +115,14 @@ pub(crate) fn light_box(light: &Light) -> (Vec3, Vec3) {
 
 /// How far a light's support extends from its position against and along the axes, metres.
 fn extents(light: &Light) -> [Vec3; 2] {
-    // What the volume gives for a ball, without its six roots: a third of an update's time.
+    // The volume gives the same for a ball, but takes six square roots.
     if light.shape == LightShape::Point {
         return [Vec3::splat(light.range_m); 2];
     }
     volume_extents(&LightVolume::from(light))
 }
 
-/// The same of any volume.
+/// How far any volume extends from its position against and along the axes, metres.
 fn volume_extents(volume: &LightVolume) -> [Vec3; 2] {
     let along = |axis: Vec3| volume.extent_along(axis);
     [

@@ -45,11 +45,11 @@ impl LightKinds {
 
     /// The kinds that occur among `lights`.
     pub fn among(lights: &[Light]) -> Self {
-        lights.iter().fold(Self::default(), Self::with)
+        lights.iter().fold(Self::default(), Self::including)
     }
 
     /// These kinds and that of a light.
-    pub(crate) fn with(self, light: &Light) -> Self {
+    pub(crate) fn including(self, light: &Light) -> Self {
         let is_cut = matches!(light.shape, LightShape::Spot { .. } | LightShape::Vpl { .. });
         Self {
             spots: self.spots || is_cut,

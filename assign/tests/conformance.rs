@@ -62,6 +62,7 @@ impl Assignment for Picky {
     }
 
     leave_to_inner!(record, lookup, bind_group, lists, memory_bytes);
+
     fn needs(&self) -> Needs {
         Needs { depth: true, normals: true, ..Needs::default() }
     }

@@ -69,7 +69,7 @@ fn wrong_depth_is_refused() {
     assert!(several.is_multisampled());
     let error = several.with_one_sample("it reads one").unwrap_err().to_string();
     assert_eq!(error, "X cannot serve a depth buffer of 4 samples per pixel: it reads one");
-    for (wrong, said) in [
+    for (wrong, message) in [
         (
             wgpu::TextureDescriptor { size: size(63, 48), ..plain.clone() },
             "size is 63x48: it must be at least 64x48, where the viewport ends",
@@ -107,7 +107,7 @@ fn wrong_depth_is_refused() {
         assert!(matches!(error, AssignError::Image { image: "depth", .. }), "{error:?}");
         let error = error.to_string();
         assert!(error.starts_with("X reads depth from a texture whose "), "{error}");
-        assert!(error.contains(said), "{error}");
+        assert!(error.contains(message), "{error}");
     }
     let missing = ask(&gpu, |frame| frame.surface_depth("X")).unwrap_err().to_string();
     assert_eq!(missing, "X needs depth, which the frame lacks");
@@ -154,8 +154,8 @@ fn wrong_layers_are_refused() {
     };
     assert_eq!(with(&[&one, &one]).unwrap().len(), 3);
     let error = with(&[&one, &four]).unwrap_err().to_string();
-    let said = "the depth of a layer from a texture whose sample count is 4: it must be 1, as in the depth buffer";
-    assert!(error.contains(said), "{error}");
+    let message = "the depth of a layer from a texture whose sample count is 4: it must be 1, as in the depth buffer";
+    assert!(error.contains(message), "{error}");
     let error = with(&[&small]).unwrap_err().to_string();
     assert!(error.contains("the depth of a layer from a texture whose size is 9x9"), "{error}");
 }
@@ -168,9 +168,10 @@ fn wrong_normals_and_colors_are_refused() {
     let of_format = |format| wgpu::TextureDescriptor { format, ..colors() };
     let signed = "it must be Rgba16Float, Rgba32Float or Rgba16Snorm";
     let four = "it must be a format of four floats";
-    let both = |said: &str| [said.to_owned(), said.to_owned()];
-    let formats = |format: &str| [signed, four].map(|said| format!("format is {format}: {said}"));
-    for (wrong, said) in [
+    let both = |message: &str| [message.to_owned(), message.to_owned()];
+    let formats =
+        |format: &str| [signed, four].map(|message| format!("format is {format}: {message}"));
+    for (wrong, message) in [
         (
             wgpu::TextureDescriptor { size: size(64, 40), ..colors() },
             both("size is 64x40: it must be at least 64x48"),
@@ -192,9 +193,9 @@ fn wrong_normals_and_colors_are_refused() {
         let colors =
             |frame: Frame<'_>| Ok(frame.with_base_color(&wrong).base_color_image("X").err());
         let asked = [(ask(&gpu, normals), "normals"), (ask(&gpu, colors), "base colours")];
-        for ((error, image), said) in asked.into_iter().zip(said) {
+        for ((error, image), message) in asked.into_iter().zip(message) {
             let error = error.unwrap().unwrap().to_string();
-            assert!(error.contains(&said) && error.contains(image), "{error}");
+            assert!(error.contains(&message) && error.contains(image), "{error}");
         }
     }
     // Unit vectors have signs, base colours need none.

@@ -96,7 +96,8 @@ fn run(bench: &mut Bench, room: &Path, line: &str) -> Result<Results, HarnessErr
 const ANY_DEPTH: &str = "DC-I G HG None Sphere T-I W W1 ZB";
 
 /// Those that also serve what lies in front of opaque surfaces.
-const IN_FRONT: &str = "DA-E DA-I DC-E DC-I G HC HG HalfZ M ModifiedHalfZ None SC-E SC-I Sphere T-25D T-E T-E1 T-I W W1 ZB";
+const IN_FRONT: &str = "DA-E DA-I DC-E DC-I G HC HG HalfZ M ModifiedHalfZ None SC-E SC-I Sphere \
+                        T-25D T-E T-E1 T-I W W1 ZB";
 
 /// Runs all strategies with layers, checks all records, and returns the families that serve them and
 /// those that refuse them, each once.

@@ -60,16 +60,18 @@ fn every_look_up_validates_inside_a_renderer() {
         {
             let slots = Slots { view, lists_group: 0, first_binding: 5, prefix };
             let text = lookup.wgsl_at_surfaces(&slots).expect(id);
-            let module = LinkedModule::new(id, &text);
-            let variables = module.module().global_variables.iter();
-            let bound: Vec<(u32, u32)> = variables
-                .filter_map(|(_, v)| Some((v.binding?.group, v.binding?.binding)))
-                .collect();
-            let is_placed = |(group, binding): (u32, u32)| {
-                (group == view.0 && (view.1..view.1 + 4).contains(&binding))
-                    || (group == 0 && (5..apart).contains(&binding))
-            };
-            assert!(bound.iter().copied().all(is_placed), "{id}: {bound:?}");
+            for text in [&text, &lookup.wgsl(&slots).expect(id)] {
+                let module = LinkedModule::new(id, text);
+                let variables = module.module().global_variables.iter();
+                let bound: Vec<(u32, u32)> = variables
+                    .filter_map(|(_, v)| Some((v.binding?.group, v.binding?.binding)))
+                    .collect();
+                let is_placed = |(group, binding): (u32, u32)| {
+                    (group == view.0 && (view.1..view.1 + 4).contains(&binding))
+                        || (group == 0 && (5..apart).contains(&binding))
+                };
+                assert!(bound.iter().copied().all(is_placed), "{id}: {bound:?}");
+            }
             if prefix == "lb_" {
                 // Look-ups of opaque surfaces and of other samples in one module.
                 let anywhere = Slots { prefix: "glass_", ..slots };

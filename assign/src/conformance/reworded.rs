@@ -49,6 +49,7 @@ impl Assignment for Reworded {
     leave_to_inner!(
         needs,
         is_view_bound,
+        specular_reach,
         compile,
         prepare,
         record,

@@ -79,7 +79,7 @@ impl Given {
     }
 }
 
-/// What the lights have in common, found in one pass: 10,000 lights take 1.8 MB, which no pass reads for free.
+/// What the lights have in common, found in one pass over them.
 struct Found {
     kinds: LightKinds,
     bounds: (Vec3, Vec3),
@@ -98,7 +98,7 @@ impl Found {
     fn add(&mut self, light: &Light) {
         let around = |a: (Vec3, Vec3), low: Vec3, high: Vec3| (a.0.min(low), a.1.max(high));
         let (position, radius_m) = (light.position, light.radius_m());
-        self.kinds = self.kinds.with(light);
+        self.kinds = self.kinds.including(light);
         self.bounds = around(self.bounds, position - radius_m, position + radius_m);
         self.position_bounds = around(self.position_bounds, position, position);
     }

@@ -88,14 +88,14 @@ pub(crate) fn shots() -> [(&'static str, Shot); 8] {
     let mirrored = look(Vec3::new(6.0, 9.0, 6.0), Vec3::new(16.0, 0.0, 0.0)) * reflection;
     let mirror = mirrored.inverse().transpose() * Vec4::new(-1.0, 0.0, 0.0, 8.0);
     let standard = perspective(-1.0, STANDARD);
-    let of = |world_to_view, clip| shot(world_to_view, clip, VIEWPORT);
+    let in_part = |world_to_view, clip| shot(world_to_view, clip, VIEWPORT);
     [
-        ("reversed infinite", of(camera, perspective(-1.0, REVERSED_INFINITE))),
-        ("standard finite", of(camera, standard)),
-        ("left-handed", of(left_handed, perspective(1.0, STANDARD))),
-        ("mirrored", of(mirrored, perspective(-1.0, REVERSED_INFINITE))),
-        ("oblique", of(mirrored, oblique(standard, mirror))),
-        ("oblique reversed", of(mirrored, reversed(oblique(standard, mirror)))),
+        ("reversed infinite", in_part(camera, perspective(-1.0, REVERSED_INFINITE))),
+        ("standard finite", in_part(camera, standard)),
+        ("left-handed", in_part(left_handed, perspective(1.0, STANDARD))),
+        ("mirrored", in_part(mirrored, perspective(-1.0, REVERSED_INFINITE))),
+        ("oblique", in_part(mirrored, oblique(standard, mirror))),
+        ("oblique reversed", in_part(mirrored, reversed(oblique(standard, mirror)))),
         ("OpenGL perspective", gl_shot(camera, perspective(-1.0, GL))),
         ("OpenGL orthographic", gl_shot(camera, gl_orthographic())),
     ]

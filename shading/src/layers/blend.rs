@@ -20,7 +20,7 @@ const PARTICLES_BINDING: u32 = 19;
 pub(super) enum Fragments<'a> {
     /// They light them, behind the fog if there is one.
     Light(&'a LightingInputs, Option<&'a FogVolume>),
-    /// They write those down that no opaque surface hides; depths tell.
+    /// They record the samples that no opaque surface hides. The depth buffer decides.
     Capture(&'a CaptureBuffers, &'a wgpu::TextureView),
 }
 
