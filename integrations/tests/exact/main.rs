@@ -7,7 +7,7 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, DepthMapping, Fewer, Gpu, GpuLights, Kept,
-    Light, LightBuffer, LightKinds, LightOrder, Projection, View, entry,
+    LightBuffer, LightKinds, LightOrder, Projection, View, entry,
     kernel::{self, Slot},
 };
 use assign_clustered::{Clustered, Occupancy};
@@ -196,23 +196,6 @@ fn four_samples_per_pixel_are_exact_with_every_strategy() {
     let cut = split_screen(SIZE)[0].view;
     shots.push(("cut", Shot::from(View { near_m: 4.0, ..cut })));
     assert_eq!(differing_shots(&gpu, 4, &shots), Vec::<String>::new());
-}
-
-/// Glass that the near plane cuts: fragments at the cut are shaded at centres in front of that plane, where lists end.
-#[test]
-fn glass_in_front_of_the_near_plane_reads_all_lights() {
-    let gpu = open_device().unwrap();
-    let cut = View { near_m: 4.0, ..split_screen(SIZE)[0].view };
-    // Small lights on a plane just in front of the near plane.
-    let to_world = cut.world_to_view.inverse();
-    let at = |i: u32| Vec3::new(0.1 * (i % 52) as f32 - 2.6, 0.1 * (i / 52) as f32 - 1.9, -3.9);
-    let light = |i| Light::point(to_world.transform_point3(at(i)), 0.09, Vec3::ONE);
-    let mut lights: Vec<Light> = (0..52 * 39).map(light).collect();
-    lights.push(Light::point(3.0 * Vec3::Y, 30.0, Vec3::ONE));
-    let lights = LightBuffer::new(&gpu, &lights).unwrap();
-    let dense = |gpu: &Gpu| clusters(gpu, Bounds::Implicit, Occupancy::Dense);
-    let mut rig = Rig::with_samples(&gpu, cut.depth, 1, 4, &dense);
-    assert_eq!(rig.differing(&lights, &[Shot::from(cut)]), 0);
 }
 
 /// A kernel of the renderer that writes lights.
