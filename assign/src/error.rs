@@ -57,7 +57,9 @@ pub enum AssignError {
         reason: String,
     },
     /// The frame lacks something that the strategy needs.
-    #[error("{strategy} needs {missing}, which the frame lacks")]
+    #[error(
+        "{strategy} needs {missing}, which the frame lacks: give it to the frame, as `Frame::with_depth` does for depth"
+    )]
     Missing {
         /// The strategy's id.
         strategy: String,

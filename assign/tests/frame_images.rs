@@ -110,7 +110,10 @@ fn wrong_depth_is_refused() {
         assert!(error.contains(message), "{error}");
     }
     let missing = ask(&gpu, |frame| frame.surface_depth("X")).unwrap_err().to_string();
-    assert_eq!(missing, "X needs depth, which the frame lacks");
+    assert_eq!(
+        missing,
+        "X needs depth, which the frame lacks: give it to the frame, as `Frame::with_depth` does for depth"
+    );
     let depth = texture(&gpu, &plain);
     let any = |frame: Frame<'_>| {
         frame.sampled_at(SampleDomain::AnyDepth).with_depth(&depth).surface_depth("X").map(|_| ())

@@ -50,7 +50,8 @@ pub(crate) fn worst_places(command: &[String], record: &Record) -> Option<String
             None => "an amount that is not finite".to_owned(),
         };
         sentences.push(format!("The worst pixel is {x},{y}{frame}: it is off by {off}."));
-        shown = shown.or(Some((worst.pixel, worst.frame)));
+        // There a missed light shows; at the first missed pair it may add nothing.
+        shown = Some((worst.pixel, worst.frame));
     }
     let ([x, y], frame) = shown?;
     if let Some(command) = explain_command(command, record, frame) {
