@@ -37,7 +37,7 @@ const SWEEPS: [Sweep; 4] = [
         note: "Each line is one number of maps. The dashed line is P.",
         axis: ("Side of a map", "texels"),
         x: |entry| Some(maps(entry.record)?.px),
-        series: |entry| of_maps(entry),
+        series: of_maps,
         has_floor: true,
     },
     Sweep {
@@ -47,7 +47,7 @@ const SWEEPS: [Sweep; 4] = [
                filter, so light leaks farther. The dashed line is P.",
         axis: ("Texels compared in each map", ""),
         x: |entry| Some(maps(entry.record)?.taps),
-        series: |entry| of_maps(entry),
+        series: of_maps,
         has_floor: true,
     },
     Sweep {
@@ -57,7 +57,7 @@ const SWEEPS: [Sweep; 4] = [
                lights. P is computed for one number of lights only, so no line is drawn.",
         axis: ("Lights", ""),
         x: |entry| u32::try_from(entry.record.setting.lights).ok(),
-        series: |entry| of_maps(entry),
+        series: of_maps,
         has_floor: false,
     },
 ];
