@@ -11,10 +11,11 @@ use crate::study::shadows::cells::{
 };
 use crate::study::shadows::jobs::TAPS;
 
-/// `25 maps of 112\u{b2}: 0.0331`.
+/// `25 maps of 112\u{b2} 0.0331`, of each step.
 fn told(steps: &[Step]) -> String {
     let one = |(maps, error): &Step| {
-        format!("{} maps of {}\u{b2} {}", maps.maps, number(f64::from(maps.px)), difference(*error))
+        let count = if maps.maps == 1 { "1 map".to_owned() } else { format!("{} maps", maps.maps) };
+        format!("{count} of {}\u{b2} {}", number(f64::from(maps.px)), difference(*error))
     };
     steps.iter().map(one).collect::<Vec<_>>().join(", ")
 }
