@@ -45,6 +45,8 @@ pub struct Stage {
     pub specular_reach: Option<f32>,
     /// How lights are shadowed. The renderer has the maps.
     pub shadows: ShadowModel,
+    /// The time that drawing the maps once takes, ms, if there are any.
+    pub(crate) shadow_draw_ms: Option<f64>,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// What makes them in every frame, if they stay on the GPU.
@@ -65,7 +67,7 @@ pub struct Stage {
     unscaled_m: f32,
     /// Whether the camera walks along the scene's path.
     walks: bool,
-    gpu: Gpu,
+    pub(crate) gpu: Gpu,
 }
 
 /// The view and the lights that the arguments give a scene.
@@ -131,6 +133,7 @@ impl Stage {
             compensation: None,
             specular_reach: None,
             shadows: ShadowModel::None,
+            shadow_draw_ms: None,
             vpls: None,
             bounce: None,
             vpl_maker: VplMaker::default(),

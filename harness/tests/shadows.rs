@@ -68,11 +68,14 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         maps: 27,
         faces: 27 * 5,
         atlas_px: [9 * 128, 9 * 128],
+        draw_ms: None,
     };
     assert_eq!((plain.len(), shadowed.len()), (6, 6));
     for (plain, shadowed) in plain.iter().zip(&shadowed) {
         assert_eq!(plain.setting.shadows, None);
-        assert_eq!(shadowed.setting.shadows.as_ref(), Some(&expected));
+        let found = shadowed.setting.shadows.clone().expect("shadows");
+        assert!(found.draw_ms.is_some_and(|ms| ms > 0.0), "{found:?}");
+        assert_eq!(ShadowSetting { draw_ms: None, ..found }, expected);
         // No strategy shows other shadows than no culling.
         let mode = shadowed.setting.mode;
         assert_eq!(shadowed.image.differing_channels, Some(0), "{} {mode:?}", shadowed.strategy);

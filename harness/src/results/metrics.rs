@@ -25,6 +25,9 @@ struct Metrics {
     #[serde(alias = "of")]
     results_checksum: String,
     records: Vec<RecordMetrics>,
+    /// The errors of a truth image against another one; empty where it was not compared.
+    #[serde(default, skip_serializing_if = "Errors::is_empty")]
+    against_errors: Errors,
 }
 
 /// The errors of one record.
@@ -48,7 +51,15 @@ impl Results {
             truth_errors: record.image.truth_errors.clone(),
             build_errors: record.indirect.as_ref().map(|vpls| vpls.build_errors.clone()),
         };
-        Metrics { results_checksum, records: self.records.iter().map(one).collect() }
+        Metrics {
+            results_checksum,
+            records: self.records.iter().map(one).collect(),
+            against_errors: self
+                .truth_image
+                .as_ref()
+                .map(|truth| truth.against_errors.clone())
+                .unwrap_or_default(),
+        }
     }
 
     /// Reads the errors from the file beside a `results.json` with this checksum, if the file exists.
@@ -58,6 +69,11 @@ impl Results {
             .filter(|bytes| unsealed(bytes).is_ok())
             .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
         let Some(known) = known.filter(|known| known.results_checksum == checksum) else { return };
+        if let Some(truth) = &mut self.truth_image
+            && !known.against_errors.is_empty()
+        {
+            truth.against_errors = known.against_errors;
+        }
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
             if record.strategy != metrics.strategy.as_str() || record.setting.mode != metrics.mode {
                 continue;

@@ -1,7 +1,8 @@
 //! The list of all studies: the one place that names them.
 
 use super::{
-    area, cdi, comparison, culling, endless, engines, gloss, living, slice::Study, stability,
+    area, cdi, comparison, culling, endless, engines, gloss, living, shadows, slice::Study,
+    stability,
 };
 use crate::cli::CliError;
 
@@ -16,6 +17,7 @@ pub(crate) const STUDIES: &[Study] = &[
     engines::STUDY,
     stability::STUDY,
     gloss::STUDY,
+    shadows::STUDY,
 ];
 
 /// Name of each study, and what it answers.

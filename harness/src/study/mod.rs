@@ -28,6 +28,7 @@ mod page;
 mod report;
 mod run;
 mod scene;
+mod shadows;
 mod slice;
 mod stability;
 

@@ -23,6 +23,25 @@ impl Renderer {
         lights: &LightBuffer,
         model: ShadowModel,
     ) -> Result<Option<ShadowFigures>, ShadingError> {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut passes = EncoderPasses { encoder: &mut encoder };
+        let figures = self.cast_shadows_in(lights, model, &mut passes)?;
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(figures)
+    }
+
+    /// [`cast_shadows`](Self::cast_shadows), but records the pass `shadow-maps` into `passes`. The caller submits them
+    /// before the first frame that reads the maps, and can time them.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`cast_shadows`](Self::cast_shadows).
+    pub fn cast_shadows_in(
+        &mut self,
+        lights: &LightBuffer,
+        model: ShadowModel,
+        passes: &mut dyn Passes,
+    ) -> Result<Option<ShadowFigures>, ShadingError> {
         // The old atlas makes room for the new one.
         self.shadows = None;
         if !model.is_on() {
@@ -31,9 +50,7 @@ impl Renderer {
         let maps = ShadowMaps::new(&self.gpu, &self.scene, lights, model)?;
         let figures = maps.figures();
         self.shadows = Some(maps);
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.record_shadow_maps(&mut EncoderPasses { encoder: &mut encoder });
-        self.gpu.queue.submit([encoder.finish()]);
+        self.record_shadow_maps(passes);
         Ok(Some(figures))
     }
 

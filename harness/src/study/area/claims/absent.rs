@@ -37,31 +37,3 @@ pub(crate) const CPU: Check = unmeasured(
     "no numbers",
     |_, _| Answer::unknown("the CPU\u{2019}s share of a frame is not timed"),
 );
-
-fn no_shadows(_: &Done, _: &str) -> Answer {
-    Answer::unknown("shadows of area lights are not built")
-}
-
-pub(crate) const SHADOW_MAPS: Check = unmeasured(
-    "shadow-maps",
-    "section 6.2, figure 6.5",
-    "In one shadow atlas more maps help up to a point.",
-    "LPIPS is least at 81 maps in 8192\u{b2} texels (0.071) and at 25 in 2048\u{b2}",
-    no_shadows,
-);
-
-pub(crate) const SHADOW_TIME: Check = unmeasured(
-    "shadow-time",
-    "section 6.2",
-    "The number of shadow maps decides the time, their resolution hardly.",
-    "no numbers",
-    no_shadows,
-);
-
-pub(crate) const SHADOW_ADAPTIVE: Check = unmeasured(
-    "shadow-adaptive",
-    "sections 6.4 and 6.5, figures 6.7 and 6.8",
-    "Adaptive subdivision is slower than 25 fixed maps and faster than 81.",
-    "its reprojection takes 3 to 4 ms",
-    no_shadows,
-);

@@ -6,7 +6,7 @@ mod cost;
 mod errors;
 mod ltc;
 
-use self::absent::{CPU, LPIPS, MANY_SAMPLES, SHADOW_ADAPTIVE, SHADOW_MAPS, SHADOW_TIME};
+use self::absent::{CPU, LPIPS, MANY_SAMPLES};
 use self::cost::{FASTER, LIGHTS_OR_SAMPLES, MRP_GAIN, ONE_LIGHT, ONE_SAMPLE, SPOTS_RATIO};
 use self::errors::{BALLS, FRESNEL, MORE_SAMPLES, MRP_FLIP, REGION_BIAS, REGION_NOISE};
 use self::ltc::{
@@ -25,7 +25,7 @@ pub(crate) const PAPER: Paper = Paper {
     checks: &CHECKS,
 };
 
-const CHECKS: [Check; 25] = [
+const CHECKS: [Check; 22] = [
     BALLS,
     REGION_NOISE,
     MORE_SAMPLES,
@@ -48,7 +48,4 @@ const CHECKS: [Check; 25] = [
     CPU,
     SPOTS_RATIO,
     FASTER,
-    SHADOW_MAPS,
-    SHADOW_TIME,
-    SHADOW_ADAPTIVE,
 ];

@@ -1,0 +1,33 @@
+//! Shadows of area lights by many shadow maps (Dobetsberger 2025, chapter 6): how far images are from the truth by the
+//! number of maps, their size, their filter and the number of lights in one atlas.
+//!
+//! Each job draws four rectangles (or the number that it names) without culling. So no error comes from lists and no
+//! time from assignment. Errors are those against T, the truth with shadows. P is the exact visible share times the
+//! exact light without shadows. Its own error against T is the floor: no model of visible shares is below it.
+
+mod cells;
+mod claims;
+mod errors;
+mod jobs;
+mod page;
+
+use super::slice::{Study, TakesMotion, atrium};
+use crate::report::markup::Html;
+
+/// The study of shadow maps.
+pub(crate) const STUDY: Study = Study {
+    name: "shadows",
+    answers: "How far shadow maps of area lights are from the truth, by their number, size and filter, and by the lights in one atlas",
+    scenes: atrium,
+    jobs: jobs::jobs,
+    motion: TakesMotion::None("shadow maps are drawn once, so the lights must stand still"),
+    after_run: errors::compare_with_truths,
+    headline: page::headline,
+    findings: page::findings,
+    front: |_| Html::default(),
+    parts: page::parts,
+    overall: |_| Html::default(),
+    paper: &claims::PAPER,
+    tells_warnings: true,
+    notices: |_| Vec::new(),
+};
