@@ -36,7 +36,7 @@ pub struct Unordered {
 
 impl Unordered {
     /// Wraps a strategy. `cap` is the most lights of a list: it must be given here and not to
-    /// [`LightLists::cap_lists`], which would drop lights before their order is random.
+    /// [`LightLists::cap_lists`](crate::LightLists::cap_lists), which would drop lights before their order is random.
     ///
     /// # Errors
     ///
