@@ -58,16 +58,19 @@ fn halves_and_slices_conform() {
     conforms(TileDepths::Sliced, "13x9", CullSettings { tests, source, ..CullSettings::default() });
 }
 
+/// All kinds of tiles that the samples in them bound.
+const EXPLICIT: [TileDepths; 5] = [
+    TileDepths::Explicit,
+    TileDepths::ExplicitAtOnce,
+    TileDepths::HalfZ,
+    TileDepths::ModifiedHalfZ,
+    TileDepths::Sliced,
+];
+
 /// Tiles whose ranges begin at the near plane hold the lights of what lies in front of surfaces.
 #[test]
 fn explicit_tiles_conform_in_front_of_surfaces() {
-    for depths in [
-        TileDepths::Explicit,
-        TileDepths::ExplicitAtOnce,
-        TileDepths::HalfZ,
-        TileDepths::ModifiedHalfZ,
-        TileDepths::Sliced,
-    ] {
+    for depths in EXPLICIT {
         let make = tiled(depths, "16x16", CullSettings::default());
         conformance::run_in_front(&make).expect("conforms");
     }
@@ -171,13 +174,7 @@ fn tiles_without_surfaces_read_all_lights() {
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
     let light = assign::Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
     let lights = LightBuffer::new(&gpu, &[light; 3]).unwrap();
-    for depths in [
-        TileDepths::Explicit,
-        TileDepths::ExplicitAtOnce,
-        TileDepths::HalfZ,
-        TileDepths::ModifiedHalfZ,
-        TileDepths::Sliced,
-    ] {
+    for depths in EXPLICIT {
         let mut strategy = tiled(depths, "16x16", CullSettings::default())(&gpu).unwrap();
         for (depth, occupied) in [(0.05, 12), (view.depth_clear(), 0), (0.05, 12)] {
             let depth = conformance::flat_depth(&gpu, [64, 48], depth);

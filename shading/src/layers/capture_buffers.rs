@@ -1,6 +1,6 @@
 //! The buffers to which passes write their samples, instead of lighting them.
 
-use assign::{AssignError, Gpu, entry, storage_entry, texture_entry};
+use assign::{AssignError, Gpu, entry, storage_entry, texture, texture_entry};
 use bytemuck::cast_slice;
 
 use crate::probe::CAPTURED_BYTES;
@@ -43,9 +43,6 @@ impl CaptureBuffers {
     }
 
     pub(super) fn depth_entry(depth: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-        wgpu::BindGroupEntry {
-            binding: DEPTH_BINDING,
-            resource: wgpu::BindingResource::TextureView(depth),
-        }
+        texture(DEPTH_BINDING, depth)
     }
 }

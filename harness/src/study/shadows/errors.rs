@@ -28,10 +28,10 @@ impl Truth {
         raw: Option<&str>,
     ) -> Result<Option<Errors>, HarnessError> {
         let image = store.image_like(raw, &self.image, "the truth")?;
-        let pair = |image: &HdrImage| {
-            stored(errors(&ImagePair { image, reference: &self.image, exposure: self.exposure }))
-        };
-        Ok(image.map(|image| pair(&image)))
+        Ok(image.map(|image| {
+            let (reference, exposure) = (&*self.image, self.exposure);
+            stored(errors(&ImagePair { image: &image, reference, exposure }))
+        }))
     }
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn compare_with_truths(done: &mut Done) -> Result<(), HarnessError> {
     let scenes: Vec<String> = done.scenes().into_iter().map(str::to_owned).collect();
     for scene in &scenes {
         let truths = truths(done, scene)?;
-        let of = |lights: u64| truths.iter().find(|truth| truth.lights == lights);
+        let truth_of = |lights: u64| truths.iter().find(|truth| truth.lights == lights);
         let sections = COMPARED.into_iter().chain([SEPARATED]);
         let jobs: Vec<String> = sections
             .flat_map(|section| done.section(scene, section).map(|(job, _)| job.name.clone()))
@@ -54,13 +54,13 @@ pub(crate) fn compare_with_truths(done: &mut Done) -> Result<(), HarnessError> {
             let Some(results) = done.results.get_mut(&job) else { continue };
             let mut store = Store::new(folder);
             if let Some(separated) = &mut results.truth_image
-                && let Some(truth) = of(separated.lights)
+                && let Some(truth) = truth_of(separated.lights)
                 && let Some(found) = truth.compare(&mut store, Some(&separated.raw))?
             {
                 separated.against_errors = found;
             }
             for record in &mut results.records {
-                let Some(truth) = of(record.setting.lights) else { continue };
+                let Some(truth) = truth_of(record.setting.lights) else { continue };
                 let raw = record.image.files.raw.as_deref();
                 if let Some(found) = truth.compare(&mut store, raw)? {
                     record.image.truth_errors = found;
