@@ -66,6 +66,12 @@ pub enum AssignError {
         /// What is missing.
         missing: &'static str,
     },
+    /// A frame read lights that the GPU should have ordered, and never did.
+    #[error(
+        "the frame before read lights that the GPU orders, but nothing ordered them: call `LightBuffer::record` in each \
+         frame with new lights, before the strategy's `record`"
+    )]
+    LightsNotRecorded,
     /// A limit of the device is too small.
     #[error(
         "{strategy} needs the limit {limit} of {needs} or more, and the device has {has}: ask for it in `required_limits` \

@@ -5,8 +5,8 @@ use bytemuck::bytes_of;
 use glam::Vec3;
 
 use crate::{
-    AssignError, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges, LightOrder,
-    ModelBox, Projection, View, ViewUniform,
+    AssignError, FrameLights, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges,
+    LightOrder, ModelBox, Projection, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
     plain_wgsl::FRAME_BINDINGS,
 };
@@ -267,6 +267,8 @@ pub struct FrameBindings {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
     bound: KeptBindGroup,
+    /// The lights of the last frame, if the GPU orders them.
+    lights: Option<FrameLights>,
 }
 
 impl FrameBindings {
@@ -281,6 +283,7 @@ impl FrameBindings {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
             layout: gpu.bind_group_layout("frame", &entries),
             bound: KeptBindGroup::default(),
+            lights: None,
         }
     }
 
@@ -295,12 +298,23 @@ impl FrameBindings {
     }
 
     /// As [`update`](Self::update), but the view takes effect where `writes` are recorded. Strategies use it.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::LightsNotRecorded`] if the frame before was recorded with lights that the GPU should have ordered,
+    /// and never did. Its image lacks light.
     pub fn update_in(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
         writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
+        if writes.is_recorded()
+            && let Some(lights) = &self.lights
+        {
+            lights.check()?;
+        }
+        self.lights = frame.lights.frame_lights();
         let uniform = view_uniform(frame)?;
         writes.write(&self.uniform, 0, bytes_of(&uniform))?;
         self.bind(gpu, frame.lights);

@@ -138,6 +138,11 @@ impl FrameWrites {
         self.is_recorded = true;
     }
 
+    /// Whether the last frame was recorded, and no new one has begun.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.is_recorded
+    }
+
     /// Bytes of its buffers.
     pub fn bytes(&self) -> u64 {
         self.stages.iter().map(|stage| stage.buffer.size()).sum()

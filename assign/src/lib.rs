@@ -115,6 +115,7 @@ pub use hitches::{Hitches, Mapped};
 pub use keep::Keep;
 pub use kept_bind_group::KeptBindGroup;
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};
+pub(crate) use light_buffer::FrameLights;
 pub use light_buffer::{GpuLights, LightBuffer, MAX_LIGHTS, RejectedLight, SlotCounts, Travel};
 pub use light_changes::LightChanges;
 pub use light_fault::LightFault;

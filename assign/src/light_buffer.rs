@@ -6,6 +6,7 @@ mod extent;
 mod given;
 mod gpu_lights;
 mod living;
+mod recorded;
 mod travel;
 mod wide;
 
@@ -24,6 +25,7 @@ pub use given::{MAX_LIGHTS, RejectedLight};
 pub use gpu_lights::GpuLights;
 use living::Living;
 pub use living::SlotCounts;
+pub(crate) use recorded::FrameLights;
 pub use travel::Travel;
 use wide::WideLights;
 
@@ -243,6 +245,11 @@ impl LightBuffer {
         if let Some(wide) = &self.wide {
             wide.record(passes);
         }
+    }
+
+    /// This frame's lights, if the GPU orders them.
+    pub(crate) fn frame_lights(&self) -> Option<FrameLights> {
+        self.living.as_ref().map(|living| FrameLights::of(living.recorded()))
     }
 
     /// Number of slots that strategies see: the accepted lights. With [`LightOrder::Gpu`] there may

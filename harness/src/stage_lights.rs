@@ -2,7 +2,7 @@
 
 use assign::{Light, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns};
 use glam::Vec3;
-use scenes::{Aabb, LightSpec, Places, Scene, close_ranges, scatter_lights};
+use scenes::{Aabb, LightSpec, Places, Scene, SceneError, close_ranges, scatter_lights};
 
 use crate::{
     cli::{CliError, LightBox, StageArgs},
@@ -46,7 +46,8 @@ impl Lit {
         let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
             let origin = scene.origin / args.scene_scale;
-            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale)?;
+            let opened = scenes::open_lights(file, origin);
+            let mut other = opened.map_err(lights_from)?.scaled(args.scene_scale)?;
             if other.lights.is_empty() && other.suns.is_empty() {
                 let accepted = "a file with lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
@@ -131,6 +132,18 @@ fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
         lights.iter().map(move |light| Light { position: light.position + by, ..*light })
     };
     offsets.flat_map(moved).collect()
+}
+
+/// An error of `--lights-from` that names this option where it would name `scene`.
+fn lights_from(error: SceneError) -> HarnessError {
+    match error {
+        SceneError::Unknown { .. } => {
+            let message = error.to_string();
+            let value = message.strip_prefix("scene").unwrap_or(&message);
+            CliError::new(format!("--lights-from{value}")).into()
+        }
+        other => other.into(),
+    }
 }
 
 #[cfg(test)]

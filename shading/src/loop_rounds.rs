@@ -119,10 +119,10 @@ impl LightTotals {
         match gpu.max_loop_rounds() {
             Some(most) if rounds > u64::from(most) => Err(AssignError::Parameter {
                 field: "lights".into(),
-                value: format!("{}, {rounds} rounds of loops per sample", self.count),
+                value: format!("{}, which takes {rounds} rounds of loops per sample", self.count),
                 accepted: format!(
-                    "at most {most} rounds on {}, which ends longer loops: fewer lights, fewer of \
-                     them area lights, or fewer samples or shadow maps",
+                    "so few that these are at most {most}, because {} ends longer loops and would lose light: use fewer \
+                     lights, fewer area lights, fewer samples or shadow maps, or a GPU",
                     gpu.info.name
                 ),
             }

@@ -1,6 +1,9 @@
 //! Lights that change in every frame: where they come from, and when they are sorted.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
 
 use bytemuck::{bytes_of, pod_collect_to_vec, pod_read_unaligned};
 use glam::Vec3;
@@ -9,6 +12,7 @@ use super::{
     decode,
     given::{Given, MAX_LIGHTS, Records},
     gpu_lights::{GpuLights, check_usage},
+    recorded::RecordedLights,
     travel::Travel,
 };
 use crate::{
@@ -58,6 +62,8 @@ pub(super) struct Living {
     reach_m: f32,
     /// Whether the frame was recorded.
     is_recorded: AtomicBool,
+    /// For frames that read the lights.
+    recorded: Arc<RecordedLights>,
     /// Number of lights at the last sort.
     sorted: u32,
     slots: u32,
@@ -96,6 +102,7 @@ impl Living {
             is_sorted: AtomicBool::new(false),
             reach_m: 0.0,
             is_recorded: AtomicBool::new(false),
+            recorded: Arc::default(),
             sorted: 0,
             slots: 0,
             uploaded_bytes: 0,
@@ -150,6 +157,7 @@ impl Living {
         // The CPU has checked the radii.
         sorter.prepare(gpu, bounds, [f32::MAX; 2], sorts);
         self.source = Some(Source::Cpu { uploaded: records });
+        self.recorded.give();
         Ok(())
     }
 
@@ -195,6 +203,7 @@ impl Living {
             let largest_m = [lights.radius_max_m, self.reach_m];
             sorter.prepare(gpu, lights.bounds, largest_m, sorts);
         }
+        self.recorded.give();
         Ok(())
     }
 
@@ -257,6 +266,7 @@ impl Living {
         let sorts = self.age == Some(0);
         sorter.record(sorts, passes);
         self.is_recorded.store(true, Ordering::Relaxed);
+        self.recorded.record();
         if sorts {
             self.is_sorted.store(true, Ordering::Relaxed);
         }
@@ -265,6 +275,10 @@ impl Living {
     /// The sorter and the shapes.
     pub(super) fn buffers(&self) -> Option<(&LightSorter, &wgpu::Buffer)> {
         self.sorter.as_ref().map(|(sorter, given)| (sorter, &given.shapes))
+    }
+
+    pub(super) fn recorded(&self) -> &Arc<RecordedLights> {
+        &self.recorded
     }
 
     pub(super) fn source(&self) -> Option<&Source> {

@@ -202,14 +202,17 @@ fn bounds_lines(bounds: &BoundsSeen) -> Vec<String> {
             ]
         }
         BoundsSeen::Box { min_world, max_world } => {
-            vec![format!("box from {}", vector(*min_world)), format!("to {} m", vector(*max_world))]
+            vec![
+                format!("box from {}", vector(*min_world)),
+                format!("to {} m, along the world's axes", vector(*max_world)),
+            ]
         }
         BoundsSeen::OrientedBox { center_world, axes, half_extents_m } => vec![
             format!("box around {}", vector(*center_world)),
             format!("half extents {} m", vector(half_extents_m.map(f64::from))),
             format!("along {}", vector(axes[0].map(f64::from))),
             format!("      {}", vector(axes[1].map(f64::from))),
-            format!("      {}", vector(axes[2].map(f64::from))),
+            format!("      {} (world space)", vector(axes[2].map(f64::from))),
         ],
     }
 }

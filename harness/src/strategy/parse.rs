@@ -197,7 +197,8 @@ impl Reader<'_> {
             let reason = format!("only one segment may be {}", axis.accepted());
             return Err(contradiction(self.id, earlier, &segment, &reason));
         }
-        axis.set(&mut self.options, &segment).ok_or_else(|| refuse(self.id, self.row, &segment))?;
+        axis.set(&mut self.options, &segment)
+            .ok_or_else(|| faulty(self.id, &segment, axis.accepted()))?;
         self.set.push((axis, segment));
         Ok(())
     }
@@ -210,8 +211,11 @@ impl Reader<'_> {
             return Err(contradiction(self.id, earlier, &segment, &reason));
         }
         let parameters = numbers(&segment, self.row.parameters.len());
-        let parameters = parameters.filter(|_| earlier.is_empty());
-        self.options.parameters = parameters.ok_or_else(|| refuse(self.id, self.row, &segment))?;
+        self.options.parameters = parameters.ok_or_else(|| match self.row.parameters {
+            [] => refuse(self.id, self.row, &segment),
+            names if starts_with_digit(&segment) => faulty(self.id, &segment, &names.join(" x ")),
+            _ => refuse(self.id, self.row, &segment),
+        })?;
         Ok(())
     }
 }
@@ -229,6 +233,12 @@ pub(super) fn refuse(id: &str, row: &Row, segment: &str) -> IdError {
         format!("segments that are {}", accepted.join(", or "))
     };
     let reason = format!("{segment:?} is unknown: {} takes {accepted}", row.family);
+    IdError::Segment { id: id.to_owned(), reason }
+}
+
+/// The error of a segment whose value is faulty.
+fn faulty(id: &str, segment: &str, accepted: &str) -> IdError {
+    let reason = format!("{segment:?} is faulty: it must be {accepted}");
     IdError::Segment { id: id.to_owned(), reason }
 }
 

@@ -20,6 +20,7 @@ use integrations::{Draw, Shot, Target, lights_at, open_device, split_screen};
 mod forward;
 
 mod engine;
+mod never_ordered;
 
 use engine::VIEWPORT;
 use forward::Forward;

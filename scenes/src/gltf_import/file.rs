@@ -205,6 +205,13 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 /// Splits a file into its JSON and the binary chunk of a GLB.
 fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
+        let is_named_glb = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+        // A `.glb` may hold the JSON of a `.gltf` by mistake, and is read as such.
+        let is_json = bytes.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{');
+        if is_named_glb && !is_json {
+            let magic = format!("{:?}", String::from_utf8_lossy(&bytes[..bytes.len().min(4)]));
+            return Err(invalid(path, "GLB magic", magic, "\"glTF\""));
+        }
         return Ok((bytes, None));
     };
     let number = |bytes: &[u8], at: usize| {
