@@ -267,8 +267,8 @@ pub struct FrameBindings {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
     bound: KeptBindGroup,
-    /// The lights of the last frame, if the GPU orders them.
-    lights: Option<FrameLights>,
+    /// The lights of the last frame, if the GPU orders them, and how often frames had been recorded before.
+    lights: Option<(FrameLights, u64)>,
 }
 
 impl FrameBindings {
@@ -309,12 +309,13 @@ impl FrameBindings {
         frame: &Frame<'_>,
         writes: &mut FrameWrites,
     ) -> Result<(), AssignError> {
-        if writes.is_recorded()
-            && let Some(lights) = &self.lights
+        let records = writes.record_count();
+        if let Some((lights, records_before)) = &self.lights
+            && records > *records_before
         {
             lights.check()?;
         }
-        self.lights = frame.lights.frame_lights();
+        self.lights = frame.lights.frame_lights().map(|lights| (lights, records));
         let uniform = view_uniform(frame)?;
         writes.write(&self.uniform, 0, bytes_of(&uniform))?;
         self.bind(gpu, frame.lights);

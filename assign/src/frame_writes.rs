@@ -52,6 +52,7 @@ pub struct FrameWrites {
     data: Vec<u8>,
     is_uploaded: bool,
     is_recorded: bool,
+    record_count: u64,
 }
 
 impl FrameWrites {
@@ -65,6 +66,7 @@ impl FrameWrites {
             data: Vec::new(),
             is_uploaded: false,
             is_recorded: false,
+            record_count: 0,
         }
     }
 
@@ -136,11 +138,12 @@ impl FrameWrites {
         let user = Arc::clone(&stage.users);
         encoder.on_submitted_work_done(move || drop(user));
         self.is_recorded = true;
+        self.record_count += 1;
     }
 
-    /// Whether the last frame was recorded, and no new one has begun.
-    pub(crate) fn is_recorded(&self) -> bool {
-        self.is_recorded
+    /// How often frames were recorded.
+    pub(crate) fn record_count(&self) -> u64 {
+        self.record_count
     }
 
     /// Bytes of its buffers.
