@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 pub(super) struct LightPoint {
     /// Relative to the light's position, metres.
     pub(super) offset: DVec3,
-    /// Its weight, relative to those of the light's other points.
+    /// The area of the light that it stands for, relative to those of the light's other points.
     pub(super) weight: u32,
 }
 
@@ -20,10 +20,9 @@ impl LightPoint {
 /// `count` points of an emitter, one of [`MAP_COUNTS`](crate::MAP_COUNTS).
 ///
 /// A rectangle's points are the corners of its quads: 4 of the whole, and 9, 25, 81 or 289 after one to four
-/// subdivisions of every quad (Dobetsberger 2025, section 6.1). A quad's visible share is the mean over its corners,
-/// and a rectangle's the mean over its quads. So a point has the weight of the quads that share it: 1 at a corner, 2
-/// on an edge, 4 inside. This is the trapezoidal rule. The equal weights of equation 6.2 would give the outline too
-/// much.
+/// subdivisions of every quad (Dobetsberger 2025, section 6.1). A quad's irradiance is the mean over its corners, and a
+/// rectangle's is the sum over its quads. So a point has the weight of the quads that share it: 1 at a corner, 2 on an
+/// edge, 4 inside. This is the trapezoidal rule. The equal weights of equation 6.2 would give the outline too much.
 ///
 /// A polygon has no quads. Its points are those of a Hammersley set, mapped to equal areas, with equal weights.
 pub(super) fn points_of(emitter: &Emitter, count: u32) -> Vec<LightPoint> {

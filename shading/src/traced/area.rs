@@ -117,8 +117,8 @@ impl<'a> SeenEmitter<'a> {
         }
     }
 
-    /// The whole reflected radiance times the share of the emitter's area that the sample sees, from `points` of it.
-    /// Parts below the sample's horizon do not count: this is what shadow maps approximate.
+    /// The whole reflected radiance times the share of the emitter's irradiance that arrives at the sample, from `points`
+    /// of it. Parts below the sample's horizon do not count: this is what shadow maps approximate.
     pub(super) fn separated(
         &self,
         scene: &TracedScene<'_>,
@@ -138,8 +138,11 @@ impl<'a> SeenEmitter<'a> {
             if !counts {
                 return (DVec3::ZERO, DVec3::ZERO);
             }
+            // cos(sample) cos(emitter) / distance^2, in no unit.
+            let cosines = surface.normal.dot(offset) * self.normal.dot(offset).abs();
+            let irradiance = DVec3::splat(cosines / offset.length_squared().powi(2));
             let is_seen = scene.sees(self.sample, *position + offset);
-            (if is_seen { DVec3::ONE } else { DVec3::ZERO }, DVec3::ONE)
+            (if is_seen { irradiance } else { DVec3::ZERO }, irradiance)
         })
     }
 

@@ -77,6 +77,30 @@ fn more_maps_come_closer_to_the_exact_share() {
     assert!(off(&separated, &direct) < 0.1 * errors[0]);
 }
 
+/// A panel stands on the floor, and a plate hides its upper half. Near the panel, the lower half gives most of the light, so
+/// the share of the area would be far too small.
+#[test]
+fn hidden_parts_count_by_the_light_that_they_would_give() {
+    let gpu = common::gpu();
+    let floor = [Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0];
+    let plate = [Vec3::new(0.0, 1.6, -1.8), Vec3::X * 2.0, Vec3::Y * 0.6];
+    let scene = scene_of(&[floor, plate], Material { double_sided: true, ..grey(0.5) }, vec![]);
+    let panel = Emitter::rectangle(Vec3::X, Vec3::Y);
+    let lights = [Light::area(panel, Vec3::new(0.0, 1.05, -2.0), 20.0, Vec3::splat(4.0))];
+    let view = View::look_at(Vec3::new(0.0, 2.0, 4.0), Vec3::ZERO, 1.0, 0.1, SIZE);
+    let models = [ShadowModel::None, maps(81, 512, 1)];
+    let (images, gbuffer) = images(&gpu, &scene, &view, &lights, &models);
+    let of_scene = |transport| truth(&scene, &lights, &gbuffer, transport);
+    let (whole, direct) = (of_scene(Transport::Unshadowed), of_scene(Transport::Direct));
+    let separated = of_scene(Transport::Separated);
+    let exact = shared(&images[0], &direct, &whole);
+    let errors = [off(&whole, &direct), off(&separated, &direct), off(&images[1], &exact)];
+    println!("without shadows, separated, 81 maps: {errors:.4?}");
+    assert!(errors[0] > 0.05, "{errors:?}");
+    assert!(errors[1] < 0.08 * errors[0], "{errors:?}");
+    assert!(errors[2] < 0.12 * errors[0], "{errors:?}");
+}
+
 /// One light of each kind with one position, spots with one face, five and six.
 #[test]
 fn lights_of_one_position_cast_exact_shadows_up_to_the_texel() {
