@@ -12,26 +12,26 @@ use crate::study::shadows::jobs::APPROACH;
 use super::charts::name;
 
 /// One row per distance and model; nothing without records.
-pub(crate) fn table(done: &Done, scene: &str) -> Html {
+pub(crate) fn table<'a>(done: &'a Done, scene: &'a str) -> Html {
     let all = entries(done, scene, APPROACH);
     if all.is_empty() {
         return Html::default();
     }
-    let row = |entry: &Entry<'_>| {
+    let row = |entry: &Entry<'a>| {
         let distance = distance_m(entry).map(|m| format!("{} m: ", significant(m)));
         Row::new(distance.unwrap_or_default() + &name(entry), *entry)
     };
-    let rows: Vec<Row<Entry<'_>>> = all.iter().map(row).collect();
-    let shadows = |entry: &Entry<'_>| entry.record.setting.shadows.clone();
-    let maps = move |entry: &Entry<'_>| Some(f64::from(shadows(entry)?.maps));
-    let frames = |entry: &Entry<'_>| Some(f64::from(adaptive(entry.record)?.frames));
+    let rows: Vec<Row<Entry<'a>>> = all.iter().map(row).collect();
+    let maps = |entry: &Entry<'a>| Some(f64::from(entry.record.setting.shadows.as_ref()?.maps));
+    let draw_ms = |entry: &Entry<'a>| entry.record.setting.shadows.as_ref()?.draw_ms;
+    let frames = |entry: &Entry<'a>| Some(f64::from(adaptive(entry.record)?.frames));
     let columns = vec![
         Column::figure("maps", "", Better::Neither, maps, number),
         Column::figure("frames to settle", "", Better::Less, frames, number),
-        Column::ms("test", |entry: &Entry<'_>| adaptive(entry.record)?.banding_ms).id("test_ms"),
-        Column::ms("draw maps", move |entry: &Entry<'_>| shadows(entry)?.draw_ms).id("draw_ms"),
-        Column::ms("shade", |entry: &Entry<'_>| Some(entry.record.times.shade_ms)).id("shade_ms"),
-        Column::ms("all three", |entry: &Entry<'_>| moving_ms(entry.record)).id("moving_ms"),
+        Column::ms("test", |entry: &Entry<'a>| adaptive(entry.record)?.banding_ms).id("test_ms"),
+        Column::ms("draw maps", draw_ms).id("draw_ms"),
+        Column::ms("shade", |entry: &Entry<'a>| Some(entry.record.times.shade_ms)).id("shade_ms"),
+        Column::ms("all three", |entry: &Entry<'a>| moving_ms(entry.record)).id("moving_ms"),
     ];
     Table::new("image", columns, rows)
         .competing(|_| false)
