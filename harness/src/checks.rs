@@ -48,7 +48,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         return Err(CliError::out_of_range("--cut", args.cut.name(), accepted));
     }
     check_reach(args.specular_reach, args.cut)?;
-    check_shadows(args.shadows, &args.stage, &args.layers)?;
+    check_shadows(args.shadows, &args.stage, &args.layers, (args.path, args.msaa))?;
     if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
         let accepted =
             "left out with --pictures differing and none, which keep no image of no culling";
@@ -349,6 +349,16 @@ mod tests {
             assert_eq!(check(&format!("--shadows none {option}")), Ok(()), "{option}");
         }
         assert_eq!(check("--shadows maps:4,64 --path --areas 0.5"), Ok(()));
+        for option in ["--path", "--msaa 4 --mode forward --truth none", "--motion drift"] {
+            let error = check(&format!("--shadows adaptive:64,4,25 {option}")).expect_err(option);
+            let name = option.split(' ').next().expect("a name");
+            let error = error.to_string();
+            assert!(
+                error.starts_with("--shadows is adaptive:64,4,25: ") && error.contains(name),
+                "{error}"
+            );
+        }
+        assert_eq!(check("--shadows adaptive:64,4,25 --mode both --areas 0.5"), Ok(()));
     }
 
     #[test]

@@ -57,7 +57,7 @@ pub use places::{MissedPair, WorstPixel};
 pub use planes::{PlaneSource, Planes};
 pub use record::Record;
 pub(crate) use seal::{sealed, unsealed};
-pub use setting::{LayerSetting, MotionSetting, Setting, ShadowSetting};
+pub use setting::{AdaptiveSetting, LayerSetting, MotionSetting, Setting, ShadowSetting};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use temporal::TemporalError;
 pub use times::Times;

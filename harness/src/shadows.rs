@@ -7,28 +7,30 @@ use crate::{
     clock::PassClock,
     error::HarnessError,
     messages::say,
-    results::{ShadowSetting, median},
+    results::{AdaptiveSetting, ShadowSetting, median},
     stage::Stage,
 };
 
-/// How often a GPU draws all maps again, to time it.
-const REDRAWS: u32 = 7;
+/// How often a GPU draws all maps again, and tests them for bands, to time it.
+const REPEATS: u32 = 7;
 
 impl Stage {
-    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. Returns a
+    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. With an
+    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. Returns a
     /// warning if area lights got fewer maps than asked for.
     ///
     /// # Errors
     ///
     /// [`CliError`] in a scene with suns, and the errors of
-    /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows).
+    /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
+    /// [`Renderer::settle_shadows`](shading::Renderer::settle_shadows).
     pub fn cast_shadows(&mut self, model: ShadowModel) -> Result<Option<String>, HarnessError> {
         self.shadows = ShadowModel::None;
         if model.is_on() && !self.suns.is_empty() {
             let accepted = "none in a scene with suns, which have no shadow maps";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
-        self.shadow_draw_ms = None;
+        (self.shadow_draw_ms, self.shadow_rounds) = (None, None);
         let Some(figures) = self.draw_maps(model)? else { return Ok(None) };
         self.shadows = model;
         let [width, height] = figures.atlas_px;
@@ -39,9 +41,22 @@ impl Stage {
             figures.atlas_bytes().div_ceil(1 << 20),
             self.shadow_draw_ms.unwrap_or_default()
         ));
+        if let Some(adaptive) = self.adaptive_setting() {
+            let maps = adaptive.maps_of_rectangles.iter();
+            say(format!(
+                "shadows  {} to {} maps for each rectangle after {} frames, {} rectangles without room for more; the \
+                 test for bands takes {:.2} ms",
+                maps.clone().min().copied().unwrap_or_default(),
+                maps.max().copied().unwrap_or_default(),
+                adaptive.frames,
+                adaptive.full_rectangles,
+                adaptive.banding_ms.unwrap_or_default()
+            ));
+        }
         let warning = figures.fell_back().then(|| {
+            let only = if model.is_adaptive() { "at most" } else { "only" };
             let warning = format!(
-                "--shadows {model}: only {} maps for each area light fit an atlas of this device",
+                "--shadows {model}: {only} {} maps for each area light fit an atlas of this device",
                 figures.maps_per_area_light
             );
             say(format!("warning  {warning}"));
@@ -50,28 +65,58 @@ impl Stage {
         Ok(warning)
     }
 
-    /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter the only
+    /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter a single
     /// one.
     fn draw_maps(&mut self, model: ShadowModel) -> Result<Option<ShadowFigures>, HarnessError> {
         if !model.is_on() {
             return Ok(self.renderer.cast_shadows(&self.lights, model)?);
         }
         let mut clock = PassClock::new(&self.gpu);
-        let figures = self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
         let ms = |clock: &mut PassClock| -> Result<f64, HarnessError> {
             Ok(clock.finish()?.iter().map(|(_, ms)| ms).sum())
         };
-        let mut draw_ms = ms(&mut clock)?;
-        if !self.gpu.is_software() {
-            let mut again = Vec::new();
-            for _ in 0..REDRAWS {
-                self.renderer.record_shadow_maps(&mut clock);
-                again.push(ms(&mut clock)?);
-            }
-            draw_ms = median(&again);
+        let first_ms = ms(&mut clock)?;
+        let repeats = if self.gpu.is_software() { 1 } else { REPEATS };
+        if model.is_adaptive() {
+            self.settle_shadows(&mut clock, repeats)?;
         }
-        self.shadow_draw_ms = Some(draw_ms);
-        Ok(figures)
+        let mut all_ms = Vec::new();
+        if model.is_adaptive() || !self.gpu.is_software() {
+            for _ in 0..repeats {
+                self.renderer.record_shadow_maps(&mut clock);
+                all_ms.push(ms(&mut clock)?);
+            }
+        } else {
+            all_ms.push(first_ms);
+        }
+        self.shadow_draw_ms = Some(median(&all_ms));
+        Ok(self.renderer.shadow_figures())
+    }
+
+    /// Draws the view until its maps have settled, and times the test for bands as a frame afterwards makes it.
+    fn settle_shadows(&mut self, clock: &mut PassClock, repeats: u32) -> Result<(), HarnessError> {
+        self.prepare()?;
+        let settled = self.renderer.settle_shadows(&self.view)?;
+        let mut all_ms = Vec::new();
+        for _ in 0..repeats {
+            self.renderer.refine_shadows(&self.view, clock)?;
+            let is_tested = self.renderer.record_banding(&self.view, clock)?;
+            let passes = clock.finish()?;
+            if is_tested {
+                all_ms.push(passes.iter().map(|(_, ms)| ms).sum());
+            }
+        }
+        let banding_ms = (!all_ms.is_empty()).then(|| median(&all_ms));
+        self.shadow_rounds = Some((settled.rounds, banding_ms));
+        Ok(())
+    }
+
+    /// How its frames subdivided the rectangles, if they did.
+    fn adaptive_setting(&self) -> Option<AdaptiveSetting> {
+        let (frames, banding_ms) = self.shadow_rounds?;
+        let (maps_of_rectangles, full_rectangles) = self.renderer.shadow_subdivision()?;
+        Some(AdaptiveSetting { maps_of_rectangles, full_rectangles, frames, banding_ms })
     }
 
     /// Its shadow maps, as records store them.
@@ -83,15 +128,18 @@ impl Stage {
             faces: figures.faces,
             atlas_px: figures.atlas_px,
             draw_ms: self.shadow_draw_ms,
+            adaptive: self.adaptive_setting(),
         })
     }
 }
 
-/// Refuses shadows of lights without maps, and on what maps do not shade.
+/// Refuses shadows of lights without maps, and on what maps do not shade. Adaptive maps follow one view (`is_path`:
+/// the camera moves), by its G-buffer, which several samples per pixel have not.
 pub(crate) fn check_shadows(
     model: ShadowModel,
     stage: &StageArgs,
     layers: &LayerArgs,
+    (is_path, samples): (bool, u32),
 ) -> Result<(), CliError> {
     if !model.is_on() {
         return Ok(());
@@ -99,6 +147,12 @@ pub(crate) fn check_shadows(
     let refuse = |accepted| Err(CliError::out_of_range("--shadows", &model.to_string(), accepted));
     if *layers != LayerArgs::default() {
         return refuse("none with --transparent, --particles and --fog, which maps do not shade");
+    }
+    if model.is_adaptive() && is_path {
+        return refuse("none or maps:N,PX with --path, because adaptive maps settle in one view");
+    }
+    if model.is_adaptive() && samples > 1 {
+        return refuse("none or maps:N,PX with --msaa 4, because adaptive maps read a G-buffer");
     }
     if stage.motion.motion.is_some() {
         return refuse("none with --motion, because maps are drawn once, before the frames");

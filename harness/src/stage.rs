@@ -47,6 +47,8 @@ pub struct Stage {
     pub shadows: ShadowModel,
     /// The time that drawing the maps once takes, ms, if there are any.
     pub(crate) shadow_draw_ms: Option<f64>,
+    /// With an adaptive model: frames until the maps had settled, and the time of the test for bands, ms.
+    pub(crate) shadow_rounds: Option<(u32, Option<f64>)>,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// What makes them in every frame, if they stay on the GPU.
@@ -134,6 +136,7 @@ impl Stage {
             specular_reach: None,
             shadows: ShadowModel::None,
             shadow_draw_ms: None,
+            shadow_rounds: None,
             vpls: None,
             bounce: None,
             vpl_maker: VplMaker::default(),

@@ -69,6 +69,7 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         faces: 27 * 5,
         atlas_px: [9 * 128, 9 * 128],
         draw_ms: None,
+        adaptive: None,
     };
     assert_eq!((plain.len(), shadowed.len()), (6, 6));
     for (plain, shadowed) in plain.iter().zip(&shadowed) {
@@ -85,4 +86,27 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
     println!("relMSE without shadows {without}, with maps {with}, separation {separation}");
     assert!(with < 0.2 * without, "{with} with maps, {without} without");
     assert!(separation < with, "{separation} with exact shares, {with} with maps");
+}
+
+#[test]
+fn adaptive_maps_settle_before_methods_are_compared() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let options = ["compare", "--strategies", "None,T-E,SC-E", "--mode", "both", "--frames", "1"];
+    let checks = ["--warmup", "0", "--truth", "none", "--shadows", "adaptive:64,2,20"];
+    run(&[&options[..], &VIEW[..], &checks[..], &["--out", out]].concat());
+    let records = Results::read(&folder.path().join("results.json")).expect("results").records;
+    assert_eq!(records.len(), 6);
+    let first = records[0].setting.shadows.clone().expect("shadows");
+    for record in &records {
+        assert_eq!(record.image.differing_channels, Some(0), "{}", record.strategy);
+        assert_eq!(record.setting.shadows.as_ref(), Some(&first));
+    }
+    let found = first.adaptive.expect("subdivided");
+    assert_eq!((first.maps_per_area_light, found.maps_of_rectangles.len()), (20, 3));
+    assert!(found.maps_of_rectangles.iter().all(|maps| (4..=20).contains(maps)), "{found:?}");
+    assert!(found.maps_of_rectangles.iter().any(|maps| *maps > 4), "{found:?}");
+    assert_eq!(found.maps_of_rectangles.iter().sum::<u32>(), first.maps);
+    assert_eq!(first.faces, 5 * first.maps);
+    assert!(found.frames > 0 && found.banding_ms > Some(0.0) && first.draw_ms > Some(0.0));
 }

@@ -5,7 +5,7 @@ mod report_data;
 
 use std::process::Command;
 
-use harness::results::{Mode, Results, ShadowSetting, TruthImage};
+use harness::results::{AdaptiveSetting, DeviceType, Mode, Results, ShadowSetting, TruthImage};
 use harness::study::{Done, Settings, write_study};
 use made_study::{add, add_with, study, verdict, write};
 use report_data::{empty, record};
@@ -73,6 +73,7 @@ fn image(maps: u32, px: u32, taps: u32, flip: f64) -> Results {
         faces: 20 * maps,
         atlas_px: [8192, 8192],
         draw_ms: Some(3.25),
+        adaptive: None,
     });
     record.image.truth_errors.insert("flip".into(), Some(flip));
     record.image.truth_errors.insert("rel_mse".into(), Some(10.0 * flip));
@@ -122,11 +123,81 @@ fn claims_follow_the_figures_and_ties_are_ties() {
     let mut part = made_up(None);
     part.results.remove("atrium-maps-8192-289");
     assert_eq!(verdict(&write(&part).page, "least-8192"), "unknown");
-    for claim in ["least-lpips", "adaptive", "time"] {
+    for claim in ["least-lpips", "adaptive", "adaptive-cost", "adaptive-resolution", "time"] {
         assert_eq!(verdict(&whole, claim), "unknown", "{claim}");
     }
     assert!(whole.contains("not decided: times of a software adapter are not those of a GPU"));
-    assert!(whole.contains("not measured: adaptive subdivision is not built"));
+}
+
+/// Distance, the name of a model, and the times to test, draw and shade.
+type Stop = (f64, &'static str, f64, f64, f64);
+
+/// An approach in which all claims hold: a coarser test is faster, and a test at an eighth lies between 25 and 81 maps.
+const STOPS: [Stop; 8] = [
+    (8.0, "adaptive:256,1,64", 9.0, 2.0, 1.0),
+    (8.0, "adaptive:256,8,64", 3.5, 2.5, 1.0),
+    (8.0, "maps:25,256", 0.0, 3.0, 2.0),
+    (8.0, "maps:81,256", 0.0, 5.0, 4.0),
+    (2.0, "adaptive:256,1,64", 9.0, 4.0, 2.0),
+    (2.0, "adaptive:256,8,64", 3.1, 3.5, 2.0),
+    (2.0, "maps:25,256", 0.0, 3.0, 2.0),
+    (2.0, "maps:81,256", 0.0, 6.0, 4.0),
+];
+
+fn approach(stops: &[Stop], adapter: Option<&str>) -> Done {
+    let mut done = study("shadows");
+    for (ix, (distance, model, banding, draw, shade)) in stops.iter().enumerate() {
+        let mut results = image(25, 256, 1, 0.1);
+        let record = &mut results.records[0];
+        record.times.shade_ms = *shade;
+        let shadows = record.setting.shadows.as_mut().expect("maps");
+        shadows.model = (*model).into();
+        shadows.maps_per_area_light =
+            model.parse::<shading::ShadowModel>().expect("a model").maps();
+        shadows.draw_ms = Some(*draw);
+        shadows.adaptive = (*banding > 0.0).then(|| AdaptiveSetting {
+            maps_of_rectangles: vec![4, 31],
+            full_rectangles: 0,
+            frames: 3,
+            banding_ms: Some(*banding),
+        });
+        if let Some(adapter) = adapter {
+            results.machine.device_type = DeviceType::DiscreteGpu;
+            results.machine.adapter = adapter.into();
+        }
+        let settings = Settings::from([("distance_m", distance.to_string().as_str())]);
+        add_with(&mut done, "approach", &ix.to_string(), settings, results);
+    }
+    done
+}
+
+#[test]
+fn claims_on_subdivision_follow_the_times_along_the_approach() {
+    const CLAIMS: [&str; 3] = ["adaptive-cost", "adaptive-resolution", "adaptive"];
+    let verdicts = |stops: &[Stop], adapter| {
+        let page = write(&approach(stops, adapter)).page;
+        CLAIMS.map(|claim| verdict(&page, claim).to_owned())
+    };
+    let paper = Some("NVIDIA GeForce RTX 3070");
+    assert_eq!(verdicts(&STOPS, paper), ["holds", "holds", "holds"]);
+    // Absolute times of another GPU decide nothing, and those of a software adapter neither.
+    assert_eq!(verdicts(&STOPS, Some("NVIDIA H200")), ["unknown", "holds", "holds"]);
+    assert_eq!(verdicts(&STOPS, None), ["unknown"; 3]);
+    // A stop is missing.
+    assert_eq!(verdicts(&STOPS[..7], paper), ["holds", "holds", "unknown"]);
+    let changed = |ix: usize, (banding, draw): (f64, f64)| {
+        let mut stops = STOPS;
+        (stops[ix].2, stops[ix].3) = (banding, draw);
+        verdicts(&stops, paper)
+    };
+    // The coarse test takes longer at one distance.
+    assert_eq!(changed(5, (3.9, 12.0)), ["differs", "differs", "differs"]);
+    // 25 maps are slower than a subdivided light.
+    assert_eq!(changed(2, (0.0, 12.0)), ["holds", "holds", "differs"]);
+    let page = write(&approach(&STOPS, paper)).page;
+    assert!(page.contains("data-part=\"approach\""));
+    let name = "8.00 m: 4 lights, 4 to 31 maps of 256\u{b2}, adaptive at 1/8";
+    assert!(page.contains(name), "the page names the models");
 }
 
 #[test]
@@ -157,7 +228,8 @@ fn the_quick_study_compares_every_image_with_its_truth() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("study");
     let out_text = out.to_str().expect("UTF-8");
-    let only = "small-truth,separated,none,maps-1024-1,maps-1024-9,sides-9-64,taps-4,lights-1";
+    let only = "small-truth,separated,none,maps-1024-1,maps-1024-9,sides-9-64,taps-4,lights-1,\
+        adaptive-1-8,approach-0-1-8,approach-2-fixed";
     let words = ["study", "shadows", "--quick", "--scene", "town-small", "--size", "32x18"];
     let output = Command::new(env!("CARGO_BIN_EXE_lightbench"))
         .args([&words[..], &["--only", only, "--out", out_text]].concat())
@@ -169,8 +241,9 @@ fn the_quick_study_compares_every_image_with_its_truth() {
     let mut compared = 0;
     for (job, results) in &done.results {
         for record in &results.records {
-            let error = record.image.truth_errors["flip"].expect("finite");
-            assert!(error > 0.0, "{job}");
+            // The approach has no truth.
+            let error = record.image.truth_errors.get("flip").copied().flatten();
+            assert_eq!(error > Some(0.0), !job.contains("approach"), "{job}: {error:?}");
             let draw_ms = record.setting.shadows.as_ref().map(|shadows| shadows.draw_ms);
             assert_eq!(draw_ms.is_none(), job.ends_with("none"), "{job}");
             assert!(draw_ms.is_none_or(|ms| ms > Some(0.0)), "{job}");
@@ -185,7 +258,7 @@ fn the_quick_study_compares_every_image_with_its_truth() {
     };
     assert!(floor(&done) > Some(0.0));
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
-    for part in ["maps", "sides", "taps", "lights", "table", "pictures"] {
+    for part in ["maps", "sides", "taps", "lights", "adaptive", "table", "approach", "pictures"] {
         assert!(page.contains(&format!("data-part=\"{part}\"")), "{part}");
     }
     assert!(page.contains("P, exact shares"));

@@ -77,6 +77,14 @@ pub enum ShadingError {
          pass. Lights that move, and lights that the GPU makes or orders, have none"
     )]
     StaleShadows,
+    /// Shadow maps that frames subdivide did not come to rest.
+    #[error(
+        "the shadow maps still changed after {frames} frames of the same view, which must not happen"
+    )]
+    RestlessShadows {
+        /// Frames that were drawn.
+        frames: u32,
+    },
     /// A sample's look-up returned another number of lights than before.
     #[error(
         "two look-ups of the same frame returned different lights: {strategy} must return the same"

@@ -5,10 +5,11 @@
 //!
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
-//! | `shadow-maps` | once, with a [`ShadowModel`] | triangles | depth from the lights |
+//! | `shadow-maps` | once, with a [`ShadowModel`]; where frames subdivide lights, again for new points | triangles | depth from the lights |
 //! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
+//! | `shadow-banding` | with [`ShadowModel::Adaptive`], by [`Renderer::record_banding`] | G-buffer, shadow maps | quads of lights that show bands |
 //! | the strategy's passes | all | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
@@ -90,9 +91,10 @@ pub use renderer::Renderer;
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use shadow_model::{
-    ACCEPTED_SHADOW_MODELS, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX, ShadowModel, TAP_COUNTS,
+    ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
+    MOST_ADAPTIVE, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::ShadowFigures;
+pub use shadows::{ShadowFigures, ShadowRefinement};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

@@ -18,6 +18,15 @@ pub const MIN_MAP_PX: u32 = 32;
 /// The largest accepted side of a map, texels.
 pub const MAX_MAP_PX: u32 = 4096;
 
+/// The accepted divisors of the viewport for the test of bands: 1 tests every pixel, 16 one in 256.
+pub const BAND_DIVISORS: [u32; 5] = [1, 2, 4, 8, 16];
+
+/// The fewest maps of a rectangle that is subdivided: its corners.
+pub const FEWEST_ADAPTIVE: u32 = MAP_COUNTS[1];
+
+/// The most maps of a rectangle that is subdivided: the corners of its quads after four subdivisions.
+pub const MOST_ADAPTIVE: u32 = MAP_COUNTS[5];
+
 /// A model of shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -35,6 +44,16 @@ pub enum ShadowModel {
         /// Texels that are compared for each map, a square around the sample: one of [`TAP_COUNTS`].
         taps: u32,
     },
+    /// Depth maps as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
+    /// refine (Dobetsberger 2025, section 6.3 and algorithm 1). A look-up compares one texel.
+    Adaptive {
+        /// Texels on a side of each map face, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
+        px: u32,
+        /// The test of bands looks at one pixel in `down` along each axis: one of [`BAND_DIVISORS`].
+        down: u32,
+        /// The most maps of each area light, [`FEWEST_ADAPTIVE`] to [`MOST_ADAPTIVE`].
+        most: u32,
+    },
 }
 
 impl ShadowModel {
@@ -43,11 +62,24 @@ impl ShadowModel {
         self != Self::None
     }
 
-    /// Maps for each area light; 0 without shadows.
+    /// Whether frames subdivide rectangles.
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Self::Adaptive { .. })
+    }
+
+    /// Maps for each area light, or the most of them if frames subdivide; 0 without shadows.
     pub fn maps(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { maps, .. } => maps,
+            Self::Maps { maps, .. } | Self::Adaptive { most: maps, .. } => maps,
+        }
+    }
+
+    /// Texels on a side of each map face; 0 without shadows.
+    pub fn px(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Maps { px, .. } | Self::Adaptive { px, .. } => px,
         }
     }
 
@@ -56,16 +88,24 @@ impl ShadowModel {
         match self {
             Self::None => 0,
             Self::Maps { taps, .. } => taps,
+            Self::Adaptive { .. } => 1,
         }
     }
 
     /// Checks each number.
     pub fn check(self) -> Result<(), AssignError> {
-        let Self::Maps { maps, px, taps } = self else { return Ok(()) };
-        let is_sound = MAP_COUNTS.contains(&maps)
-            && (MIN_MAP_PX..=MAX_MAP_PX).contains(&px)
-            && px.is_multiple_of(2)
-            && TAP_COUNTS.contains(&taps);
+        let has_sides = |px: u32| (MIN_MAP_PX..=MAX_MAP_PX).contains(&px) && px.is_multiple_of(2);
+        let is_sound = match self {
+            Self::None => true,
+            Self::Maps { maps, px, taps } => {
+                MAP_COUNTS.contains(&maps) && has_sides(px) && TAP_COUNTS.contains(&taps)
+            }
+            Self::Adaptive { px, down, most } => {
+                has_sides(px)
+                    && BAND_DIVISORS.contains(&down)
+                    && (FEWEST_ADAPTIVE..=MOST_ADAPTIVE).contains(&most)
+            }
+        };
         if is_sound { Ok(()) } else { Err(refused(&self.to_string())) }
     }
 }
@@ -76,6 +116,7 @@ impl fmt::Display for ShadowModel {
             Self::None => f.write_str("none"),
             Self::Maps { maps, px, taps: 1 } => write!(f, "maps:{maps},{px}"),
             Self::Maps { maps, px, taps } => write!(f, "maps:{maps},{px},pcf{taps}"),
+            Self::Adaptive { px, down, most } => write!(f, "adaptive:{px},{down},{most}"),
         }
     }
 }
@@ -87,7 +128,11 @@ impl FromStr for ShadowModel {
     fn from_str(text: &str) -> Result<Self, AssignError> {
         let model = match text {
             "none" => Some(Self::None),
-            _ => text.strip_prefix("maps:").and_then(maps_of),
+            _ => match text.split_once(':') {
+                Some(("maps", numbers)) => maps_of(numbers),
+                Some(("adaptive", numbers)) => adaptive_of(numbers),
+                _ => None,
+            },
         };
         let model = model.ok_or_else(|| refused(text))?;
         model.check().map_err(|_| refused(text))?;
@@ -103,11 +148,19 @@ fn maps_of(numbers: &str) -> Option<ShadowModel> {
         [maps, px, taps] => (maps, px, taps.strip_prefix("pcf")?),
         _ => return None,
     };
-    let number = |text: &str| {
-        // `parse` alone accepts a sign.
-        text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
-    };
     Some(ShadowModel::Maps { maps: number(maps)?, px: number(px)?, taps: number(taps)? })
+}
+
+/// `PX,DOWN,MOST`.
+fn adaptive_of(numbers: &str) -> Option<ShadowModel> {
+    let parts: Vec<&str> = numbers.split(',').collect();
+    let [px, down, most] = parts[..] else { return None };
+    Some(ShadowModel::Adaptive { px: number(px)?, down: number(down)?, most: number(most)? })
+}
+
+/// A whole number without a sign, which `parse` alone accepts.
+fn number(text: &str) -> Option<u32> {
+    text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
 
 impl TryFrom<String> for ShadowModel {
@@ -125,8 +178,9 @@ impl From<ShadowModel> for String {
 }
 
 /// The accepted models.
-pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX or maps:N,PX,pcfK, with N of 1, 4, 9, 25, 81 or 289 maps for \
-    each area light, an even PX of 32 to 4096 texels, and K of 1, 4, 9, 16 or 25 taps";
+pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK or adaptive:PX,DOWN,MOST, with N of 1, 4, 9, \
+    25, 81 or 289 maps for each area light, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 taps, a test of \
+    bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
 
 fn refused(value: &str) -> AssignError {
     AssignError::Parameter {
@@ -146,6 +200,11 @@ mod tests {
         for maps in MAP_COUNTS {
             for taps in TAP_COUNTS {
                 models.push(ShadowModel::Maps { maps, px: 32 * maps.min(128), taps });
+            }
+        }
+        for down in BAND_DIVISORS {
+            for most in [4, 64, 289] {
+                models.push(ShadowModel::Adaptive { px: 32 * most.min(128), down, most });
             }
         }
         for model in models {
@@ -176,11 +235,23 @@ mod tests {
             "maps:+4,512",
             "maps:4,99999999999",
             "maps:-4,512",
+            "adaptive",
+            "adaptive:",
+            "adaptive:256,8",
+            "adaptive:256,8,64,1",
+            "adaptive:256,3,64",
+            "adaptive:256,32,64",
+            "adaptive:255,8,64",
+            "adaptive:30,8,64",
+            "adaptive:256,8,3",
+            "adaptive:256,8,290",
+            "adaptive:256,8,+64",
+            "Adaptive:256,8,64",
         ] {
             let error = bad.parse::<ShadowModel>().unwrap_err().to_string();
             let expected = format!("shadow model is {bad}: it must be none, maps:N,PX");
             assert!(error.starts_with(&expected), "{error}");
-            for count in MAP_COUNTS.iter().chain(&TAP_COUNTS) {
+            for count in MAP_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS) {
                 assert!(error.contains(&count.to_string()), "{count} is not named: {error}");
             }
         }

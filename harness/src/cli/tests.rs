@@ -98,7 +98,7 @@ fn an_error_names_the_option_the_value_and_the_range() {
         ("--area-model", &["LTC", "disc", "monte-carlo:0"], shading::ACCEPTED_AREA_MODELS),
         (
             "--shadows",
-            &["on", "maps", "maps:5,64", "maps:4,64,pcf8"],
+            &["on", "maps", "maps:5,64", "maps:4,64,pcf8", "adaptive:64,3,25", "adaptive:64,4,3"],
             shading::ACCEPTED_SHADOW_MODELS,
         ),
         ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),

@@ -131,7 +131,8 @@ pub struct LayerSetting {
 pub struct ShadowSetting {
     /// The model that was asked for, such as `maps:9,512`.
     pub model: String,
-    /// Maps for each area light. Fewer than the model's if more did not fit the atlas.
+    /// Maps for each area light, or the most of them if frames subdivided. Fewer than the model's if more did not fit
+    /// the atlas.
     pub maps_per_area_light: u32,
     /// Maps of all lights.
     pub maps: u32,
@@ -143,6 +144,25 @@ pub struct ShadowSetting {
     /// in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draw_ms: Option<f64>,
+    /// With an adaptive model: how frames subdivided the lights. Absent otherwise, and in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<AdaptiveSetting>,
+}
+
+/// How frames subdivided rectangles, before the frames on the clock. A frame of lights that move would take
+/// [`ShadowSetting::draw_ms`], `banding_ms` and the time to shade.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveSetting {
+    /// Maps of each rectangle in the end, in the order of the lights.
+    pub maps_of_rectangles: Vec<u32>,
+    /// Rectangles that had no maps left to divide further.
+    pub full_rectangles: u32,
+    /// Frames that were tested until no quad changed.
+    pub frames: u32,
+    /// The time of the pass `shadow-banding` after that, ms: on a GPU the median of seven. It is in no other time.
+    /// Absent if there was nothing to test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub banding_ms: Option<f64>,
 }
 
 /// How lights move.

@@ -47,7 +47,7 @@ impl Renderer {
         if !model.is_on() {
             return Ok(None);
         }
-        let maps = ShadowMaps::new(&self.gpu, &self.scene, lights, model)?;
+        let maps = ShadowMaps::new(&self.gpu, &self.scene, &self.frame, lights, model)?;
         let figures = maps.figures();
         self.shadows = Some(maps);
         self.record_shadow_maps(passes);
@@ -64,6 +64,12 @@ impl Renderer {
     /// What was made for the present shadows; `None` without any.
     pub fn shadow_figures(&self) -> Option<ShadowFigures> {
         self.shadows.as_ref().map(ShadowMaps::figures)
+    }
+
+    /// The number of maps of each rectangle, in the order of the lights' slots, and how many rectangles have no places
+    /// for more; `None` if frames do not subdivide them.
+    pub fn shadow_subdivision(&self) -> Option<(Vec<u32>, u32)> {
+        self.shadows.as_ref()?.subdivision()
     }
 
     /// The maps as lighting reads them.

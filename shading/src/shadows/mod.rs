@@ -45,6 +45,13 @@
 //! two texels, `4 depth / px`, or as many more as the filter is wide. The offset of a sample follows the shading
 //! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
 //!
+//! # Subdivision
+//!
+//! With [`ShadowModel::Adaptive`], [`quadtree`] divides each rectangle where frames show bands (Dobetsberger 2025,
+//! algorithm 1). [`start_level`] chooses the first subdivision, [`banding`] tests the quads, and [`rectangle`] gives
+//! points their places in an atlas that holds the most maps of all lights. A place keeps its faces, so a new point draws
+//! its own map only.
+//!
 //! # Cost
 //!
 //! Maps hold while lights and scene stand still, so they are drawn once, before the frames. Shading reads
@@ -57,12 +64,20 @@
 //! thinner than a texel casts no or too wide a shadow. The share multiplies diffuse and specular light alike, so a
 //! highlight whose part of the emitter is hidden stays visible: the separation error. It is zero on matte surfaces.
 
+mod adaptive;
+mod banding;
 mod cast;
+mod clear_face;
 mod plan;
 mod points;
+mod quadtree;
+mod rectangle;
+mod refine;
+mod start_level;
+mod views;
 
-use assign::{AssignError, Gpu, Light, LightBuffer, Passes, ViewUniform};
-use bytemuck::{Zeroable, bytes_of, cast_slice};
+use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Passes, View};
+use bytemuck::cast_slice;
 
 use crate::{
     ShadingError, ShadowModel,
@@ -72,7 +87,11 @@ use crate::{
     targets::DEPTH_FORMAT,
 };
 
+use adaptive::Adaptive;
+pub use adaptive::ShadowRefinement;
+use banding::Drawn;
 use plan::{Face, Plan};
+use views::Views;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
 const MOST_ATLAS_PX: u32 = 1 << 15;
@@ -86,11 +105,12 @@ const STORAGE_BUFFERS: u32 = 9;
 pub struct ShadowFigures {
     /// The model that was asked for.
     pub model: ShadowModel,
-    /// Maps for each area light. Fewer than asked for if more did not fit the atlas.
+    /// Maps for each area light, or the most of them if frames subdivide. Fewer than asked for if more did not fit
+    /// the atlas.
     pub maps_per_area_light: u32,
-    /// Maps of all lights.
+    /// Maps of all lights at present.
     pub maps: u32,
-    /// Faces of all maps.
+    /// Faces of all maps at present.
     pub faces: u32,
     /// Width and height of the atlas, texels.
     pub atlas_px: [u32; 2],
@@ -114,12 +134,15 @@ pub(crate) struct ShadowMaps {
     figures: ShadowFigures,
     /// The lights that the maps are for, by slot.
     lights: Vec<Light>,
+    /// All places of faces, some of which may be free.
     faces: Vec<Face>,
+    /// The faces of all maps, ascending.
+    drawn: Vec<u32>,
     pipelines: RasterPipelines,
-    views: wgpu::BindGroup,
-    /// Bytes from one face's view to the next.
-    view_stride: u32,
+    views: Views,
     bound: BoundMaps,
+    /// The trees of rectangles, if frames subdivide them.
+    adaptive: Option<Adaptive>,
 }
 
 impl ShadowMaps {
@@ -132,6 +155,7 @@ impl ShadowMaps {
     pub(crate) fn new(
         gpu: &Gpu,
         scene: &SceneGpu,
+        frame: &FrameBindings,
         lights: &LightBuffer,
         model: ShadowModel,
     ) -> Result<Self, ShadingError> {
@@ -145,7 +169,8 @@ impl ShadowMaps {
             .into());
         }
         let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
-        let plan = Plan::new(lights.lights(), model, most_px)?;
+        let mut plan = Plan::new(lights.lights(), model, most_px)?;
+        let adaptive = Adaptive::new(gpu, frame.layout(), &mut plan, lights.lights(), model)?;
         let figures = ShadowFigures {
             model,
             maps_per_area_light: plan.maps,
@@ -159,7 +184,7 @@ impl ShadowMaps {
         let atlas = gpu.allocate("the atlas of shadow maps", figures.atlas_bytes(), || {
             atlas(gpu, plan.size)
         })?;
-        let (views, layout, view_stride) = views(gpu, &plan.faces)?;
+        let (views, layout) = Views::new(gpu, &plan.faces)?;
         let pipelines = RasterPipelines::new(
             gpu,
             &layout,
@@ -167,15 +192,29 @@ impl ShadowMaps {
             Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
             RasterPass::ShadowMap { slopes: plan.slopes },
         )?;
-        Ok(Self {
+        let mut maps = Self {
             figures,
             lights: lights.lights().to_vec(),
+            drawn: (0..figures.faces).collect(),
             faces: plan.faces,
             pipelines,
             views,
-            view_stride,
             bound: BoundMaps::new(model, atlas, records),
-        })
+            adaptive,
+        };
+        maps.count_maps();
+        Ok(maps)
+    }
+
+    /// Finds the faces of all maps, and counts them, where frames change them.
+    fn count_maps(&mut self) {
+        let Some(adaptive) = &self.adaptive else { return };
+        let maps = adaptive.maps_of_rectangles();
+        let (rectangles, maps) = maps.fold((0, 0), |(count, sum), maps| (count + 1, sum + maps));
+        let others = self.lights.len() as u32 - rectangles;
+        self.drawn = adaptive.drawn_faces(self.faces.len());
+        self.figures.faces = self.drawn.len() as u32;
+        self.figures.maps = others + maps;
     }
 
     pub(crate) fn figures(&self) -> ShadowFigures {
@@ -195,6 +234,60 @@ impl ShadowMaps {
         if is_same { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 
+    /// Whether frames subdivide rectangles.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        self.adaptive.is_some()
+    }
+
+    /// Whether frames could change a rectangle.
+    pub(crate) fn has_tests(&self) -> bool {
+        self.adaptive.as_ref().is_some_and(Adaptive::has_tests)
+    }
+
+    /// The number of maps of each rectangle, and how many rectangles have no places left; `None` if frames do not
+    /// subdivide them.
+    pub(crate) fn subdivision(&self) -> Option<(Vec<u32>, u32)> {
+        let adaptive = self.adaptive.as_ref()?;
+        Some((adaptive.maps_of_rectangles().collect(), adaptive.full_rectangles()))
+    }
+
+    /// Takes the bands that frames have shown, and records the pass `shadow-maps` for new points.
+    pub(crate) fn refine(
+        &mut self,
+        view: &View,
+        scene: &SceneGpu,
+        scene_group: &wgpu::BindGroup,
+        passes: &mut dyn Passes,
+    ) -> Result<ShadowRefinement, ShadingError> {
+        let Some(adaptive) = &mut self.adaptive else { return Ok(ShadowRefinement::default()) };
+        let Some(patch) = adaptive.advance(view) else { return Ok(ShadowRefinement::default()) };
+        let found = adaptive.last();
+        let views = (&self.views.buffer, self.views.stride);
+        adaptive.write(&patch, self.bound.records(), views, passes)?;
+        for (face, world_to_view) in &patch.faces {
+            self.faces[*face].world_to_view = *world_to_view;
+        }
+        self.count_maps();
+        let mut fresh: Vec<u32> = patch.faces.iter().map(|(face, _)| *face as u32).collect();
+        fresh.sort_unstable();
+        if !fresh.is_empty() {
+            self.draw(scene, scene_group, &fresh, wgpu::LoadOp::Load, passes);
+        }
+        Ok(found)
+    }
+
+    /// Records a test for bands of the frame that was drawn. Returns whether it did.
+    pub(crate) fn record_banding(
+        &mut self,
+        drawn: Drawn<'_>,
+        passes: &mut dyn Passes,
+    ) -> Result<bool, ShadingError> {
+        match &mut self.adaptive {
+            Some(adaptive) => adaptive.record_round(drawn, &self.bound, passes),
+            None => Ok(false),
+        }
+    }
+
     /// Records the pass `shadow-maps`: the depth of all triangles in every face.
     pub(crate) fn record(
         &self,
@@ -202,25 +295,41 @@ impl ShadowMaps {
         scene_group: &wgpu::BindGroup,
         passes: &mut dyn Passes,
     ) {
+        // Nothing is infinitely far.
+        self.draw(scene, scene_group, &self.drawn, wgpu::LoadOp::Clear(0.0), passes);
+    }
+
+    /// Draws some faces. Unless the whole atlas is cleared, each of them is.
+    fn draw(
+        &self,
+        scene: &SceneGpu,
+        scene_group: &wgpu::BindGroup,
+        faces: &[u32],
+        load: wgpu::LoadOp<f32>,
+        passes: &mut dyn Passes,
+    ) {
+        let clear = self.adaptive.as_ref().map(|adaptive| &adaptive.clear_face);
+        let clear = clear.filter(|_| load == wgpu::LoadOp::Load);
         let descriptor = wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: self.bound.atlas(),
-                // Nothing is infinitely far.
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Store,
-                }),
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         };
         passes.render("shadow-maps", &descriptor, &mut |pass| {
-            pass.set_bind_group(2, scene_group, &[]);
-            for (ix, face) in (0..).zip(&self.faces) {
+            for ix in faces {
+                let face = &self.faces[*ix as usize];
                 let ([x, y], [width, height]) = (face.origin, face.size);
                 pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
                 pass.set_scissor_rect(x, y, width, height);
-                pass.set_bind_group(0, &self.views, &[ix * self.view_stride]);
+                if let Some(clear) = clear {
+                    pass.set_pipeline(clear);
+                    pass.draw(0..3, 0..1);
+                }
+                pass.set_bind_group(0, &self.views.group, &[*ix * self.views.stride]);
+                pass.set_bind_group(2, scene_group, &[]);
                 scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
             }
         });
@@ -253,53 +362,4 @@ fn atlas(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
         view_formats: &[],
     });
     texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// The views of all faces in one buffer, bound at an offset for each face: bind group 0 of the pass, its layout and
-/// the bytes from view to view.
-fn views(
-    gpu: &Gpu,
-    faces: &[Face],
-) -> Result<(wgpu::BindGroup, wgpu::BindGroupLayout, u32), AssignError> {
-    let size = size_of::<ViewUniform>();
-    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-    let stride = (size as u32).next_multiple_of(alignment.max(1));
-    let mut bytes = vec![0; stride as usize * faces.len().max(1)];
-    for (slot, face) in bytes.chunks_mut(stride as usize).zip(faces) {
-        let view = ViewUniform {
-            world_to_view: face.world_to_view.to_cols_array_2d(),
-            view_to_clip: face.view_to_clip.to_cols_array_2d(),
-            ..ViewUniform::zeroed()
-        };
-        slot[..size].copy_from_slice(bytes_of(&view));
-    }
-    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-    let buffer = gpu.buffer("views of shadow maps", bytes.len() as u64, usage)?;
-    gpu.queue.write_buffer(&buffer, 0, &bytes);
-    let layout = gpu.bind_group_layout(
-        "shadow maps",
-        &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: wgpu::BufferSize::new(size as u64),
-            },
-            count: None,
-        }],
-    );
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadow maps"),
-        layout: &layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer,
-                offset: 0,
-                size: wgpu::BufferSize::new(size as u64),
-            }),
-        }],
-    });
-    Ok((group, layout, stride))
 }

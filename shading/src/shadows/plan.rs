@@ -1,10 +1,10 @@
 //! Plans shadow maps: which points get maps, which faces they have, and where in the atlas each face lies.
 
-use assign::{AssignError, Light, LightShape};
-use glam::{DMat3, DVec3, Mat4, Vec4};
+use assign::{AssignError, Light, LightShape, Outline};
+use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
 
 use super::points::{LightPoint, points_of};
-use crate::{MAP_COUNTS, ShadowModel};
+use crate::{FEWEST_ADAPTIVE, MAP_COUNTS, ShadowModel};
 
 /// Texels beyond each edge of a face, per texel of the filter's side. The offset along the normal moves a look-up by at
 /// most one texel per texel of the filter, and its taps reach half as far again.
@@ -55,6 +55,31 @@ pub(super) struct Plan {
     pub(super) maps: u32,
     /// All maps.
     pub(super) map_count: u32,
+    /// The rectangles that frames subdivide, ascending. Their maps are placed, and wait for their points.
+    pub(super) sites: Vec<Site>,
+}
+
+/// Where the maps of a light lie whose points change.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Site {
+    /// Its slot.
+    pub(super) light: usize,
+    /// The vector of its first map in the records. Each map has three.
+    pub(super) first_map: usize,
+    /// The index of the first face of its first map.
+    pub(super) first_face: usize,
+    /// Faces of a map.
+    pub(super) face_count: usize,
+    /// Right, down and forward of each face.
+    turned: [(DVec3, DVec3, DVec3); FACES],
+}
+
+impl Site {
+    /// World to view space of a face, seen from `eye`.
+    pub(super) fn world_to_view(&self, face: usize, eye: DVec3) -> Mat4 {
+        let (right, down, forward) = self.turned[face];
+        world_to_view(right, down, -forward, eye)
+    }
 }
 
 /// The directions in which a light shines, as faces of maps.
@@ -84,6 +109,15 @@ impl Reach {
         }
     }
 
+    /// Faces of a map.
+    fn face_count(self) -> usize {
+        match self {
+            Self::Cone(_) => 1,
+            Self::Half => FACES - 1,
+            Self::All => FACES,
+        }
+    }
+
     /// Squares of the atlas that a map takes. Two halves share one.
     fn squares(self) -> u64 {
         match self {
@@ -94,12 +128,24 @@ impl Reach {
     }
 }
 
-/// The number of maps of a light.
+/// Whether a light is a rectangle, whose points are corners of quads.
+fn is_rectangle(light: &Light) -> bool {
+    matches!(&light.shape, LightShape::Area(emitter) if emitter.outline() == Outline::Rectangle)
+}
+
+/// The number of maps of a light. Other area lights than rectangles get the largest of [`MAP_COUNTS`] that is not
+/// above `maps`.
 fn maps_of(light: &Light, maps: u32) -> u64 {
-    match light.shape {
-        LightShape::Area(_) => u64::from(maps),
+    match &light.shape {
+        LightShape::Area(_) if is_rectangle(light) => u64::from(maps),
+        LightShape::Area(_) => u64::from(fixed_count(maps)),
         LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => 1,
     }
+}
+
+/// The largest of [`MAP_COUNTS`] that is not above a number.
+fn fixed_count(maps: u32) -> u32 {
+    MAP_COUNTS.into_iter().rfind(|count| *count <= maps).unwrap_or(1)
 }
 
 /// Squares of the atlas that all lights take.
@@ -120,25 +166,34 @@ impl Plan {
         most_px: u32,
     ) -> Result<Self, AssignError> {
         model.check()?;
-        let ShadowModel::Maps { maps: asked, px, taps } = model else {
-            return Err(AssignError::Parameter {
-                field: "shadow model".into(),
-                value: model.to_string(),
-                accepted: "a model with maps".into(),
-            });
+        let (px, taps) = (model.px(), model.taps());
+        // The numbers of maps to try, from the most.
+        let counts: Vec<u32> = match model {
+            ShadowModel::None => {
+                return Err(AssignError::Parameter {
+                    field: "shadow model".into(),
+                    value: model.to_string(),
+                    accepted: "a model with maps".into(),
+                });
+            }
+            ShadowModel::Maps { maps, .. } => {
+                MAP_COUNTS.into_iter().rev().filter(|count| *count <= maps).collect()
+            }
+            ShadowModel::Adaptive { most, .. } => (FEWEST_ADAPTIVE..=most).rev().collect(),
         };
         let columns_most = most_px / px;
         let most = u64::from(columns_most).pow(2);
-        let counts = MAP_COUNTS.into_iter().rev().filter(|maps| *maps <= asked);
-        let maps = counts.into_iter().find(|maps| squares(lights, *maps) <= most);
+        let fewest = counts.last().copied().unwrap_or(1);
+        let fits = |maps: u32| squares(lights, maps) <= most;
+        let maps = counts.into_iter().filter(|_| fits(fewest)).find(|maps| fits(*maps));
         let Some(maps) = maps else {
             return Err(AssignError::Parameter {
                 field: "shadow model".into(),
                 value: format!("{model} for {} lights", lights.len()),
                 accepted: format!(
-                    "one whose maps fit an atlas of {most_px}x{most_px} texels: one map for each light takes {} \
-                     squares of {px} texels, and {most} fit",
-                    squares(lights, 1)
+                    "one whose maps fit an atlas of {most_px}x{most_px} texels: {fewest} for each area light and one \
+                     for each other light take {} squares of {px} texels, and {most} fit",
+                    squares(lights, fewest)
                 ),
             });
         };
@@ -158,15 +213,34 @@ impl Plan {
         let reach = across * std::f64::consts::SQRT_2;
         let mut records = vec![[taps.isqrt(), px, bits(planner.texel), bits(reach)]];
         let first = 1 + 3 * lights.len();
-        for light in lights {
-            let record = planner.add(light, maps, first)?;
-            records.extend(record);
+        let mut sites = Vec::new();
+        for (ix, light) in lights.iter().enumerate() {
+            if model.is_adaptive() && is_rectangle(light) {
+                let reach = Reach::of_light(light);
+                sites.push(Site {
+                    light: ix,
+                    first_map: first + planner.maps.len(),
+                    first_face: planner.faces.len(),
+                    face_count: reach.face_count(),
+                    turned: turned(axes_of(light)),
+                });
+                let waiting = vec![LightPoint::MIDDLE; maps as usize];
+                records.extend(planner.add(light, waiting, first));
+                continue;
+            }
+            let points = match &light.shape {
+                LightShape::Area(emitter) => points_of(emitter, maps_of(light, maps) as u32),
+                LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => {
+                    vec![LightPoint::MIDDLE]
+                }
+            };
+            records.extend(planner.add(light, points, first));
         }
         records.append(&mut planner.maps);
         let map_count = ((records.len() - first) / 3) as u32;
         // Depth differs by at most one greatest difference along each of the two axes.
         let slopes = (2.0 * across) as f32;
-        Ok(Self { records, faces: planner.faces, size, slopes, maps, map_count })
+        Ok(Self { records, faces: planner.faces, size, slopes, maps, map_count, sites })
     }
 }
 
@@ -184,21 +258,11 @@ struct Planner {
 }
 
 impl Planner {
-    /// The record of a light. Its maps begin at the vector `first` plus those that were added before.
-    fn add(
-        &mut self,
-        light: &Light,
-        maps: u32,
-        first: usize,
-    ) -> Result<[[u32; 4]; 3], AssignError> {
+    /// The record of a light with a map from each of its points. Its maps begin at the vector `first` plus those that
+    /// were added before.
+    fn add(&mut self, light: &Light, points: Vec<LightPoint>, first: usize) -> [[u32; 4]; 3] {
         let reach = Reach::of_light(light);
         let axes = axes_of(light);
-        let points = match &light.shape {
-            LightShape::Area(emitter) => points_of(emitter, maps),
-            LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => {
-                vec![LightPoint::MIDDLE]
-            }
-        };
         let first_map = (first + self.maps.len()) as u32;
         let near_m = f64::from(light.range_m) * NEAR_SHARE;
         for point in &points {
@@ -206,7 +270,7 @@ impl Planner {
             let eye = (light.position.as_dvec3() + point.offset).as_vec3();
             let faces = self.faces(reach, axes, eye.as_dvec3(), near_m);
             self.maps.extend([
-                [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), point.weight],
+                point_record(eye, point.weight),
                 [faces[0], faces[1], faces[2], faces[3]],
                 [faces[4], faces[5], bits(near_m * (1.0 + DEPTH_SLACK)), 0],
             ]);
@@ -217,26 +281,19 @@ impl Planner {
             Reach::All => (0.0, 0),
         };
         let axis = |axis: DVec3, last| [bits(axis.x), bits(axis.y), bits(axis.z), last];
-        Ok([
+        [
             axis(axes.x_axis, first_map),
             axis(axes.y_axis, points.len() as u32 | half),
             axis(axes.z_axis, bits(spread)),
-        ])
+        ]
     }
 
     /// Adds the faces of a map; returns the place of each in the atlas, x in the low half and y in the high one.
     fn faces(&mut self, reach: Reach, axes: DMat3, eye: DVec3, near_m: f64) -> [u32; FACES] {
-        let (x, y, z) = (axes.x_axis, axes.y_axis, axes.z_axis);
         let px = self.px;
-        // Right, down and forward of each face: `face_of` in `shadow.wesl`.
-        let turned = [(x, y, z), (y, z, x), (y, z, -x), (x, z, y), (x, z, -y), (x, y, -z)];
         let mut places = [0; FACES];
-        let count = match reach {
-            Reach::Cone(_) => 1,
-            Reach::Half => FACES - 1,
-            Reach::All => FACES,
-        };
-        for (ix, (right, down, forward)) in turned.into_iter().enumerate().take(count) {
+        let turned = turned(axes).into_iter().take(reach.face_count());
+        for (ix, (right, down, forward)) in turned.enumerate() {
             let is_half = reach == Reach::Half && ix > 0;
             // The second of two halves lies below the first.
             let below = is_half && ix % 2 == 0;
@@ -257,6 +314,17 @@ impl Planner {
         }
         places
     }
+}
+
+/// The first vector of a map: its point, and the weight of that.
+pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
+    [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
+}
+
+/// Right, down and forward of each face: `face_of` in `shadow.wesl`.
+fn turned(axes: DMat3) -> [(DVec3, DVec3, DVec3); FACES] {
+    let (x, y, z) = (axes.x_axis, axes.y_axis, axes.z_axis);
+    [(x, y, z), (y, z, x), (y, z, -x), (x, z, y), (x, z, -y), (x, y, -z)]
 }
 
 /// Single precision, as bits.

@@ -31,4 +31,7 @@ fn lighting_with_shadows_reads_the_maps() {
             assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root}: {used:?}");
         }
     }
+    // The test for bands reads depth, normals and maps, whatever the options of lighting are.
+    let used = link("package::shadow_banding", &Flags::new(), None).used(2);
+    assert_eq!(used, [0, 2, MAPS[0], MAPS[1], 28, 29]);
 }

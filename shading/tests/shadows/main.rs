@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
+mod adaptive;
 #[path = "../common/mod.rs"]
 mod common;
 mod errors;

@@ -2,6 +2,7 @@
 
 use assign::{
     Assignment, Bounds, CullSettings, Emitter, EncoderPasses, Everything, Light, LightBuffer, Suns,
+    View,
 };
 use assign_clustered::{Clustered, Occupancy};
 use assign_model::PerModel;
@@ -32,7 +33,26 @@ fn shadows_differ_in_no_bit_between_strategies() {
     let model = maps(9, 64, 4);
     let figures = renderer.cast_shadows(&lights, model).unwrap().unwrap();
     assert_eq!((figures.maps, figures.fell_back()), (30 + 2 * 9, false));
+    all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred, Mode::Forward]);
+    let model = ShadowModel::Adaptive { px: 64, down: 4, most: 25 };
+    renderer.cast_shadows(&lights, model).unwrap();
     renderer.prepare(&view, &lights).unwrap();
+    renderer.settle_shadows(&view).unwrap();
+    let maps = renderer.shadow_figures().unwrap().maps;
+    assert!((30 + 2 * 4 + 1..30 + 2 * 25).contains(&maps), "{maps} maps");
+    all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred]);
+}
+
+/// Compares strategies with no culling, whose image shows the shadows.
+fn all_show_the_same(
+    renderer: &mut Renderer,
+    view: &View,
+    lights: &LightBuffer,
+    model: ShadowModel,
+    modes: &[Mode],
+) {
+    let gpu = renderer.gpu().clone();
+    renderer.prepare(view, lights).unwrap();
     let clusters = |bounds, occupancy| -> Box<dyn Assignment> {
         let size = "16x16x16".parse().unwrap();
         let settings = CullSettings::default();
@@ -44,10 +64,10 @@ fn shadows_differ_in_no_bit_between_strategies() {
         clusters(Bounds::Explicit, Occupancy::Sparse),
         Box::new(per_model),
     ];
-    for mode in [Mode::Deferred, Mode::Forward] {
+    for &mode in modes {
         let mut everything = Everything::new(&gpu).unwrap();
         let draw = |strategy: &mut dyn Assignment, shadows| {
-            draw(&renderer, &view, &lights, strategy, mode, shadows)
+            draw(renderer, view, lights, strategy, mode, shadows)
         };
         let none = draw(&mut everything, model);
         let plain = draw(&mut everything, ShadowModel::None);

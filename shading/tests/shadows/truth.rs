@@ -19,7 +19,7 @@ use crate::{
 const SIZE: [u32; 2] = [96, 64];
 
 /// A floor, a wall, and two plates in the air, one of them turned away from the lights and the camera.
-fn plates() -> Scene {
+pub(crate) fn plates() -> Scene {
     let floor = [Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0];
     let wall = [Vec3::new(0.0, 2.0, -3.0), Vec3::X * 4.0, Vec3::Y * 2.0];
     let plate = [Vec3::new(-0.4, 1.2, 0.0), Vec3::Z * 0.4, Vec3::X * 0.4];
@@ -27,7 +27,7 @@ fn plates() -> Scene {
     scene_of(&[floor, wall, plate, away], Material { double_sided: true, ..grey(0.5) }, vec![])
 }
 
-fn view() -> View {
+pub(crate) fn view() -> View {
     View::look_at(Vec3::new(0.5, 2.2, 4.0), Vec3::new(0.0, 0.4, -0.5), 1.0, 0.1, SIZE)
 }
 

@@ -2,7 +2,7 @@
 
 use shading::ShadowModel;
 
-use super::jobs::{ATLAS, MAPS, NONE, SEPARATED};
+use super::jobs::{ATLAS, DISTANCE, MAPS, NONE, SEPARATED};
 use crate::results::{DeviceType, Errors, Record};
 use crate::study::claims::order::Order;
 use crate::study::data::{Entry, entries};
@@ -22,15 +22,54 @@ pub(crate) struct Maps {
     pub(crate) taps: u32,
 }
 
-/// The shadow maps of a record; `None` without shadows.
+/// The shadow maps of a record; `None` without shadows, and where frames subdivided the lights.
 pub(crate) fn maps(record: &Record) -> Option<Maps> {
     let setting = record.setting.shadows.as_ref()?;
     match setting.model.parse().ok()? {
         ShadowModel::Maps { px, taps, .. } => {
             Some(Maps { maps: setting.maps_per_area_light, px, taps })
         }
-        ShadowModel::None => None,
+        ShadowModel::None | ShadowModel::Adaptive { .. } => None,
     }
+}
+
+/// The shadow maps of a record whose frames subdivided the lights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Adaptive {
+    /// The side of a face, texels.
+    pub(crate) px: u32,
+    /// Pixels along an axis of which one was tested for bands.
+    pub(crate) down: u32,
+    /// The fewest and the most maps of a rectangle.
+    pub(crate) maps: [u32; 2],
+    /// Frames until the maps had settled.
+    pub(crate) frames: u32,
+    /// The time of the test for bands, ms; `None` if there was nothing to test.
+    pub(crate) banding_ms: Option<f64>,
+}
+
+/// The shadow maps of a record whose frames subdivided the lights; `None` of others.
+pub(crate) fn adaptive(record: &Record) -> Option<Adaptive> {
+    let setting = record.setting.shadows.as_ref()?;
+    let ShadowModel::Adaptive { px, down, .. } = setting.model.parse().ok()? else { return None };
+    let found = setting.adaptive.as_ref()?;
+    let maps = found.maps_of_rectangles.iter().copied();
+    let maps = [maps.clone().min().unwrap_or_default(), maps.max().unwrap_or_default()];
+    let banding_ms = found.banding_ms.filter(|ms| ms.is_finite());
+    Some(Adaptive { px, down, maps, frames: found.frames, banding_ms })
+}
+
+/// The time of a frame whose lights move, ms: drawing all maps, the test for bands if there is one, and shading.
+pub(crate) fn moving_ms(record: &Record) -> Option<f64> {
+    let shadows = record.setting.shadows.as_ref()?;
+    let test = shadows.adaptive.as_ref().and_then(|adaptive| adaptive.banding_ms);
+    let sum = shadows.draw_ms? + test.unwrap_or(0.0) + record.times.shade_ms;
+    sum.is_finite().then_some(sum)
+}
+
+/// The distance between camera and light of a job that approaches it, metres.
+pub(crate) fn distance_m(entry: &Entry<'_>) -> Option<f64> {
+    entry.job.settings.number(DISTANCE)
 }
 
 /// An error against T, without its sign; `None` where it was not measured.

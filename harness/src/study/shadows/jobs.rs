@@ -1,10 +1,12 @@
 //! The jobs of one scene: truth images first, then one comparison per shadow model.
 
+use assign::LightShape;
+use glam::DVec3;
 use shading::{MAX_MAP_PX, MIN_MAP_PX, ShadowModel};
 
 use crate::{
     bench::Bench,
-    cli::{Size, StudyArgs},
+    cli::{self, Invocation, Size, StudyArgs},
     error::HarnessError,
     strategy::BASELINE,
     study::{against_truth::TRUTH, job::Job, scene::StudyScene},
@@ -23,11 +25,31 @@ pub(crate) const TAPS: &str = "taps";
 /// The number of lights that share one atlas.
 pub(crate) const LIGHTS: &str = "lights";
 
+/// Lights that frames subdivide, by the resolution of the test, and fixed numbers of maps beside them.
+pub(crate) const ADAPTIVE: &str = "adaptive";
+/// The same for one light that the camera approaches.
+pub(crate) const APPROACH: &str = "approach";
+
 /// The sections whose images are compared with the truth.
-pub(crate) const COMPARED: [&str; 5] = [NONE, MAPS, SIDES, TAPS, LIGHTS];
+pub(crate) const COMPARED: [&str; 6] = [NONE, MAPS, SIDES, TAPS, LIGHTS, ADAPTIVE];
 
 /// The setting of jobs whose maps share an atlas of a fixed side, texels.
 pub(crate) const ATLAS: &str = "atlas_px";
+
+/// The setting of jobs of [`APPROACH`]: from the camera to the light, metres.
+pub(crate) const DISTANCE: &str = "distance_m";
+
+/// Where the cameras of [`APPROACH`] stand: shares of the way from a place in front of the light to the default camera.
+const APPROACHED: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// How far in front of the light that place lies, as a share of the light's range.
+const IN_FRONT: f64 = 0.125;
+
+/// The fixed numbers of maps beside subdivided lights (Dobetsberger 2025, figure 6.8).
+const FIXED: [u32; 2] = [25, 81];
+
+/// The most maps of a subdivided light: those of the paper's atlas (section 6.4).
+const MOST_MAPS: u32 = 64;
 
 /// The range of a light as a share of the diagonal of the scene's core: that of the study of area lights.
 const RANGE_SHARE: f32 = 0.5;
@@ -54,6 +76,10 @@ struct Extent {
     lights: &'static [u32],
     /// Maps of each of these lights.
     shared_maps: u32,
+    /// The side of maps of subdivided lights.
+    adaptive_px: u32,
+    /// The test for bands looks at one pixel in so many along each axis.
+    downs: &'static [u32],
 }
 
 const FULL: Extent = Extent {
@@ -68,6 +94,8 @@ const FULL: Extent = Extent {
     filtered_px: 256,
     lights: &[1, 4, 16, 64],
     shared_maps: 25,
+    adaptive_px: 256,
+    downs: &[1, 2, 4, 8, 16],
 };
 
 const QUICK: Extent = Extent {
@@ -82,6 +110,8 @@ const QUICK: Extent = Extent {
     filtered_px: 128,
     lights: &[1, 4, 16],
     shared_maps: 9,
+    adaptive_px: 64,
+    downs: &[1, 8],
 };
 
 /// The squares of an atlas that one map of a one-sided rectangle takes: one face and four halves.
@@ -95,6 +125,12 @@ fn side_that_fits(atlas_px: u32, lights: u32, maps: u32) -> Option<u32> {
     (px >= MIN_MAP_PX).then_some(px)
 }
 
+/// A camera on its way to the light, and its distance from it, metres.
+struct Stop {
+    camera: String,
+    distance_m: f64,
+}
+
 /// The jobs of one scene.
 ///
 /// # Errors
@@ -106,17 +142,54 @@ pub(crate) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let ([core, _], _) = scene.boxes(bench)?;
-    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
+    let range_m = core.diagonal() * RANGE_SHARE;
+    let stops = stops(bench, args, scene, range_m)?;
+    Ok(plan(args, scene, range_m, &stops))
 }
 
-fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
-    let extent = if args.quick { QUICK } else { FULL };
-    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
-    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
+/// The cameras that approach the only light of [`APPROACH`], the farthest first.
+fn stops(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+    range_m: f32,
+) -> Result<Vec<Stop>, HarnessError> {
+    let size = Size { width: 16, height: 9 };
+    let words = [scene.options(size, args.seed), alike(range_m)].concat();
+    let words = words.iter().map(String::as_str).chain(["--lights", "1"]);
+    let words = ["lightbench", "compare"].into_iter().chain(words);
+    let Invocation::Compare(asked) = cli::parse(words)? else { return Ok(Vec::new()) };
+    let stage = bench.stage(&asked.stage)?;
+    let Some(light) = stage.lights.lights().first() else { return Ok(Vec::new()) };
+    let LightShape::Area(emitter) = &light.shape else { return Ok(Vec::new()) };
+    let lit = light.position.as_dvec3()
+        + emitter.normal().as_dvec3() * (IN_FRONT * f64::from(light.range_m));
+    let eye = stage.view.eye().as_dvec3();
+    let stop = |share: f64| {
+        let eye = lit + (eye - lit) * share;
+        let [from, to] = [eye, lit].map(|place| {
+            let DVec3 { x, y, z } = stage.scene.origin + place;
+            format!("{x},{y},{z}")
+        });
+        Stop { camera: format!("{from}:{to}"), distance_m: eye.distance(light.position.as_dvec3()) }
+    };
+    Ok(APPROACHED.map(stop).into())
+}
+
+/// The options of the lights: rectangles with equal ranges.
+fn alike(range_m: f32) -> Vec<String> {
     // All digits: in a scene of millimetres, a rounded range would differ.
     let range = range_m.clamp(1e-6, 1e6).to_string();
     let alike = ["--radii", "equal", "--radius-scale", &range];
-    let lit = [&drawn[..], &alike, &["--areas", "1", "--outlines", "rectangles"]].concat();
+    let lit = ["--areas", "1", "--outlines", "rectangles"];
+    alike.into_iter().chain(lit).map(str::to_owned).collect()
+}
+
+fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> Vec<Job> {
+    let extent = if args.quick { QUICK } else { FULL };
+    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
+    let lit = [drawn, alike(range_m)].concat();
+    let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let truth = |section: &str, lights: u32, more: &[&str]| {
         let count = lights.to_string();
         let variant = if lights == FEW { "" } else { count.as_str() };
@@ -160,20 +233,35 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
         let job = compare(LIGHTS, &lights.to_string(), *lights, plain(maps, px, 1));
         jobs.push(job.with(ATLAS, &atlas.to_string()));
     }
+    let px = extent.adaptive_px;
+    let adaptive = extent.downs.iter().map(|down| {
+        (format!("1-{down}"), ShadowModel::Adaptive { px, down: *down, most: MOST_MAPS })
+    });
+    let fixed = FIXED.map(|maps| (format!("fixed-{maps}"), plain(maps, px, 1)));
+    let models: Vec<(String, ShadowModel)> = adaptive.chain(fixed).collect();
+    jobs.extend(models.iter().map(|(variant, model)| compare(ADAPTIVE, variant, FEW, *model)));
+    for (ix, stop) in stops.iter().enumerate() {
+        for (variant, model) in &models {
+            let mut job = compare(APPROACH, &format!("{ix}-{variant}"), 1, *model);
+            job.command.extend([format!("--camera={}", stop.camera)]);
+            jobs.push(job.with(DISTANCE, &stop.distance_m.to_string()));
+        }
+    }
     jobs
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Invocation, parse};
+    use crate::cli::parse;
 
     fn jobs(line: &str) -> Vec<Job> {
         let words = ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
         let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
         let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
         let scenes = StudyScene::all(&args).expect("scenes");
-        scenes.iter().flat_map(|scene| plan(&args, scene, 10.0)).collect()
+        let stops = [Stop { camera: "-1.5,2,0:0,1,0.25".into(), distance_m: 3.5 }];
+        scenes.iter().flat_map(|scene| plan(&args, scene, 10.0, &stops)).collect()
     }
 
     #[test]
@@ -188,10 +276,10 @@ mod tests {
             for job in &jobs {
                 assert!(parse(&job.command).is_ok(), "{:?}", job.command);
                 assert!(truths.contains(&job.option("--lights")), "{}", job.name);
-                let known = COMPARED.contains(&job.section.as_str());
+                let known = COMPARED.contains(&job.section.as_str()) || job.section == APPROACH;
                 assert_eq!(known, job.command[1] == "compare", "{}", job.name);
             }
-            for section in COMPARED {
+            for section in COMPARED.into_iter().chain([APPROACH]) {
                 assert!(jobs.iter().any(|job| job.section == section), "{line}: {section}");
             }
         }

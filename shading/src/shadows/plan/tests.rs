@@ -115,3 +115,39 @@ fn an_atlas_that_is_too_small_gets_fewer_maps_or_is_refused() {
     let none = Plan::new(&[], model(4, 64, 1), 4096).unwrap();
     assert_eq!((none.map_count, none.size), (0, [64, 64]));
 }
+
+#[test]
+fn rectangles_that_frames_subdivide_get_places_and_others_a_fixed_number() {
+    let model = |most| ShadowModel::Adaptive { px: 64, down: 8, most };
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 2.0, 0.0)];
+    let (polygon, middle) = Emitter::polygon(&corners).unwrap();
+    let mut lights = vec![square(Vec3::ZERO); 2];
+    lights.push(Light::area(polygon, middle, 10.0, Vec3::ONE));
+    lights.push(spot(0.5));
+    lights.push(square(Vec3::ONE));
+    let plan = Plan::new(&lights, model(24), 4096).unwrap();
+    assert_eq!((plan.maps, plan.map_count), (24, 3 * 24 + 9 + 1));
+    let sites: Vec<usize> = plan.sites.iter().map(|site| site.light).collect();
+    assert_eq!(sites, [0, 1, 4]);
+    for site in &plan.sites {
+        assert_eq!(plan.records[3 * site.light + 1][3] as usize, site.first_map);
+        let address = plan.records[site.first_map + 1][0];
+        let [x, y] = plan.faces[site.first_face].origin;
+        assert_eq!(address, x | y << 16);
+        let eye = glam::DVec3::new(1.0, 2.0, 3.0);
+        let moved =
+            plan.faces[site.first_face + 4].world_to_view * site.world_to_view(4, eye).inverse();
+        let offset = moved.transform_point3(Vec3::ZERO).length();
+        let from = lights[site.light].position.distance(eye.as_vec3());
+        assert!((offset - from).abs() < 1e-4, "{offset} {from}");
+    }
+    // 16 x 16 squares: three lights take 9 of them for each map, the polygon 27, and the spot 1.
+    let plan = Plan::new(&lights, model(289), 1024).unwrap();
+    assert_eq!((plan.maps, plan.map_count), (24, 3 * 24 + 9 + 1));
+    assert!(plan.size[0] <= 1024 && plan.size[1] <= 1024);
+    let error = Plan::new(&lights, model(289), 320).unwrap_err().to_string();
+    assert!(
+        error.contains("4 for each area light and one for each other light take 49 squares"),
+        "{error}"
+    );
+}

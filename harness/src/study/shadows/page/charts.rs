@@ -8,7 +8,7 @@ use crate::report::markup::{Html, html};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
-use crate::study::shadows::cells::{error, floor_of, maps};
+use crate::study::shadows::cells::{Adaptive, adaptive, error, floor_of, maps};
 
 /// The metrics of the panels, the first in front.
 const METRICS: [&str; 2] = ["flip", "rel_mse"];
@@ -84,6 +84,11 @@ pub(crate) fn name(entry: &Entry<'_>) -> String {
         1 => "1 light".to_owned(),
         lights => format!("{} lights", number(lights as f64)),
     };
+    if let Some(Adaptive { px, down, maps: [least, most], .. }) = adaptive(record) {
+        let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
+        let px = number(f64::from(px));
+        return format!("{lights}, {count} maps of {px}\u{b2}, adaptive at 1/{down}");
+    }
     let Some(maps) = maps(record) else { return format!("{lights}, no shadows") };
     let count = if maps.maps == 1 { "1 map".to_owned() } else { format!("{} maps", maps.maps) };
     let taps = if maps.taps == 1 { String::new() } else { format!(", {} taps", maps.taps) };

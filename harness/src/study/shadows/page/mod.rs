@@ -1,12 +1,13 @@
 //! The page of shadow maps: errors by the number of maps, their size, their filter and the lights in one atlas.
 
+mod approach;
 mod charts;
 mod pictures;
 mod table;
 
 use self::charts::{Sweep, swept};
-use super::cells::{METRIC, atlas, atlases, floor_of, least, maps, steps};
-use super::jobs::{COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
+use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, steps};
+use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
 use crate::study::data::{Entry, entries};
@@ -16,7 +17,7 @@ use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
 
 /// The sweeps of the study, in the order of the page.
-const SWEEPS: [Sweep; 4] = [
+const SWEEPS: [Sweep; 5] = [
     Sweep {
         section: MAPS,
         title: "Error by the number of maps in one atlas",
@@ -60,6 +61,16 @@ const SWEEPS: [Sweep; 4] = [
         series: of_maps,
         has_floor: false,
     },
+    Sweep {
+        section: ADAPTIVE,
+        title: "Error where frames subdivide the lights",
+        note: "The fewer pixels are tested for bands, the fewer maps the lights get. The table below also has fixed numbers \
+               of maps of the same side. The dashed line is P.",
+        axis: ("Pixels along an axis of which one is tested", ""),
+        x: |entry| Some(adaptive(entry.record)?.down),
+        series: |_| "adaptive".to_owned(),
+        has_floor: true,
+    },
 ];
 
 /// `25 maps`, the name of a line.
@@ -71,6 +82,9 @@ const TABLE_NOTE: &str = "Errors are those against T, the truth with shadows. Th
      are times from the records. \u{201c}Draw maps\u{201d} draws all maps once, before the frames. \
      \u{201c}Shade\u{201d} is a frame\u{2019}s lighting pass without culling. Times of a software adapter say nothing \
      of a GPU.";
+
+const APPROACH_NOTE: &str = "The camera looks at a place in front of the light. The last column is what a frame would take whose light moves: drawing \
+     all maps, the test for bands, and shading. Times of a software adapter say nothing of a GPU.";
 
 /// The parts of a scene's section.
 pub(crate) fn parts(
@@ -88,6 +102,8 @@ pub(crate) fn parts(
     let all = COMPARED.map(|section| entries(done, scene, section)).concat();
     let body = table::table(done, scene, &all);
     parts.push(Part::new("table", "All figures", TABLE_NOTE, body));
+    let body = approach::table(done, scene);
+    parts.push(Part::new(APPROACH, "Subdivision as the camera approaches", APPROACH_NOTE, body));
     parts.push(Part::new(
         "pictures",
         "What maps look like",
