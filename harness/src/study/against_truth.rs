@@ -1,48 +1,112 @@
-//! The error of the models of a study against its truth image: an error of shading, never of culling.
+//! The errors of a study's images against its truth images: errors of shading, never of culling.
+
+use std::rc::Rc;
+
+use shading::HdrImage;
 
 use super::job::Job;
 use super::manifest::Done;
 use crate::{
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
-    results::{Results, TruthImage},
+    results::{Errors, Results, TruthImage},
     stored::Store,
 };
 
 /// The section of a study whose jobs render the truth images of its scenes.
 pub const TRUTH: &str = "truth";
 
-/// The section whose images are compared with them.
+/// The section of area-light models, whose images are compared with them.
 pub const MODELS: &str = "models";
 
-/// Computes the errors of every record of [`MODELS`] against the truth image of its scene, where both
-/// images are there.
+/// Sections whose images are compared, each with the section of its truth images.
+pub(crate) type Compared = [(&'static str, &'static str)];
+
+/// Which truth image of a section an image is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TruthOf {
+    /// The only one of the scene. Its lights may be others: virtual ones stand for those of the truth.
+    Scene,
+    /// That of as many lights.
+    Lights,
+}
+
+/// The truth of one number of lights.
+struct Truth {
+    lights: u64,
+    image: Rc<HdrImage>,
+    exposure: f32,
+}
+
+impl Truth {
+    /// The errors of a stored image; `None` where it is missing.
+    fn compare(
+        &self,
+        store: &mut Store<'_>,
+        raw: Option<&str>,
+    ) -> Result<Option<Errors>, HarnessError> {
+        let image = store.image_like(raw, &self.image, "the truth")?;
+        Ok(image.map(|image| {
+            let (reference, exposure) = (&*self.image, self.exposure);
+            stored(errors(&ImagePair { image: &image, reference, exposure }))
+        }))
+    }
+}
+
+/// Computes the errors of every image of these sections against its truth image, where both images are there.
 ///
 /// # Errors
 ///
 /// Where a file is no image, or of another size than the truth.
-pub(crate) fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
+pub(crate) fn compare_with_truths(
+    done: &mut Done,
+    compared: &Compared,
+    by: TruthOf,
+) -> Result<(), HarnessError> {
     let scenes: Vec<String> = done.scenes().into_iter().map(str::to_owned).collect();
-    for scene in &scenes {
-        let Some((job, truth)) = truth_of(done, scene) else { continue };
-        let Some(folder) = done.folders.get(&job.name) else { continue };
-        let Some(reference) = Store::new(folder).image(Some(&truth.raw))? else { continue };
-        let exposure = truth.exposure as f32;
-        let models: Vec<String> =
-            done.section(scene, MODELS).map(|(job, _)| job.name.clone()).collect();
-        for model in models {
-            let Some(folder) = done.folders.get(&model) else { continue };
-            let Some(results) = done.results.get_mut(&model) else { continue };
+    for (scene, (section, truth)) in
+        scenes.iter().flat_map(|scene| compared.iter().map(move |pair| (scene, *pair)))
+    {
+        let truths = truths(done, scene, truth)?;
+        let truth_of = |lights: u64| {
+            truths.iter().find(|truth| by == TruthOf::Scene || truth.lights == lights)
+        };
+        let jobs: Vec<String> =
+            done.section(scene, section).map(|(job, _)| job.name.clone()).collect();
+        for job in jobs {
+            let Some(folder) = done.folders.get(&job) else { continue };
+            let Some(results) = done.results.get_mut(&job) else { continue };
             let mut store = Store::new(folder);
+            if let Some(image) = &mut results.truth_image
+                && let Some(truth) = truth_of(image.lights)
+                && let Some(found) = truth.compare(&mut store, Some(&image.raw))?
+            {
+                image.against_errors = found;
+            }
             for record in &mut results.records {
+                let Some(truth) = truth_of(record.setting.lights) else { continue };
                 let raw = record.image.files.raw.as_deref();
-                let Some(image) = store.image_like(raw, &reference, "the truth")? else { continue };
-                let pair = ImagePair { image: &image, reference: &reference, exposure };
-                record.image.truth_errors = stored(errors(&pair));
+                if let Some(found) = truth.compare(&mut store, raw)? {
+                    record.image.truth_errors = found;
+                }
             }
         }
     }
     Ok(())
+}
+
+/// The truth images of a scene and a section that are there.
+fn truths(done: &Done, scene: &str, section: &str) -> Result<Vec<Truth>, HarnessError> {
+    let mut all = Vec::new();
+    for (job, results) in done.section(scene, section) {
+        let (Some(truth), Some(folder)) = (&results.truth_image, done.folders.get(&job.name))
+        else {
+            continue;
+        };
+        let Some(image) = Store::new(folder).image(Some(&truth.raw))? else { continue };
+        all.push(Truth { lights: truth.lights, image, exposure: truth.exposure as f32 });
+    }
+    Ok(all)
 }
 
 /// The truth image of a scene, with its job.

@@ -8,7 +8,7 @@ mod page;
 pub use self::jobs::BOUNDS;
 use self::page::{cost, models, pictures};
 use super::{
-    against_truth::{MODELS, compare_with_truth},
+    against_truth::{MODELS, TRUTH, TruthOf, compare_with_truths},
     slice::{Study, TakesMotion, atrium},
 };
 use crate::report::markup::Html;
@@ -20,7 +20,7 @@ pub(crate) const STUDY: Study = Study {
     scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::AllBut(&[MODELS]),
-    after_run: compare_with_truth,
+    after_run: |done| compare_with_truths(done, &[(MODELS, TRUTH)], TruthOf::Scene),
     headline: models::headline,
     findings: |done, scene| [models::findings(done, scene), cost::findings(done, scene)].concat(),
     front: |_| Html::default(),

@@ -13,7 +13,7 @@ mod verdicts;
 use self::against_builds::compare_builds;
 use self::page::tables;
 use super::{
-    against_truth::compare_with_truth,
+    against_truth::{MODELS, TRUTH, TruthOf, compare_with_truths},
     slice::{Study, TakesMotion, atrium},
 };
 use crate::report::markup::Html;
@@ -25,7 +25,10 @@ pub(crate) const STUDY: Study = Study {
     scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::None("its lights are virtual ones, or the one primary light"),
-    after_run: |done| compare_with_truth(done).and_then(|()| compare_builds(done)),
+    after_run: |done| {
+        compare_with_truths(done, &[(MODELS, TRUTH)], TruthOf::Scene)?;
+        compare_builds(done)
+    },
     headline: tables::headline,
     findings: tables::findings,
     front: |_| Html::default(),

@@ -2,7 +2,7 @@
 
 use shading::ShadowModel;
 
-use super::jobs::{ATLAS, DISTANCE, MAPS, NONE, SEPARATED};
+use super::jobs::{ATLAS, DISTANCE, MAPS, NONE, PIPELINE, SEPARATED};
 use crate::results::{DeviceType, Errors, Record};
 use crate::study::claims::order::Order;
 use crate::study::data::{Entry, entries};
@@ -92,6 +92,11 @@ pub(crate) fn floor<'a>(done: &'a Done, scene: &'a str) -> Option<&'a Errors> {
 /// An error of P against T.
 pub(crate) fn floor_of(done: &Done, scene: &str, metric: &str) -> Option<f64> {
     finite(floor(done, scene)?, metric)
+}
+
+/// The error of the pipeline without shadows against the truth without shadows; `None` where it was not measured.
+pub(crate) fn pipeline_of(done: &Done, scene: &str, metric: &str) -> Option<f64> {
+    error(entries(done, scene, PIPELINE).first()?.record, metric)
 }
 
 /// The record without shadows.

@@ -16,6 +16,12 @@ use crate::{
 pub(crate) const SEPARATED: &str = "separated";
 /// Without shadows.
 pub(crate) const NONE: &str = "none";
+/// The same, compared with [`UNSHADOWED`]: the error of the pipeline that no shadow model changes.
+pub(crate) const PIPELINE: &str = "pipeline";
+/// The truth without shadows.
+pub(crate) const UNSHADOWED: &str = "unshadowed";
+/// T of each number of lights of [`LIGHTS`].
+pub(crate) const LIGHTS_TRUTH: &str = "truth-lights";
 /// The number of maps in atlases of fixed sizes.
 pub(crate) const MAPS: &str = "maps";
 /// The side of a map at a fixed number of maps.
@@ -30,7 +36,19 @@ pub(crate) const ADAPTIVE: &str = "adaptive";
 /// The same for one light that the camera approaches.
 pub(crate) const APPROACH: &str = "approach";
 
-/// The sections whose images are compared with the truth.
+/// The sections whose images are compared, each with the section of its truth.
+pub(crate) const AGAINST: [(&str, &str); 8] = [
+    (SEPARATED, TRUTH),
+    (NONE, TRUTH),
+    (MAPS, TRUTH),
+    (SIDES, TRUTH),
+    (TAPS, TRUTH),
+    (LIGHTS, LIGHTS_TRUTH),
+    (ADAPTIVE, TRUTH),
+    (PIPELINE, UNSHADOWED),
+];
+
+/// The sections whose images are compared with the truth with shadows.
 pub(crate) const COMPARED: [&str; 6] = [NONE, MAPS, SIDES, TAPS, LIGHTS, ADAPTIVE];
 
 /// The setting of jobs whose maps share an atlas of a fixed side, texels.
@@ -74,6 +92,9 @@ struct Extent {
     /// The side of a map that is filtered.
     filtered_px: u32,
     lights: &'static [u32],
+    /// The size of images of `lights`, and the samples per pixel of their truth: T of many lights takes long.
+    lights_size: Size,
+    lights_samples: &'static str,
     /// Maps of each of these lights.
     shared_maps: u32,
     /// The side of maps of subdivided lights.
@@ -93,6 +114,8 @@ const FULL: Extent = Extent {
     taps: (&[4, 9, 25], &[1, 4, 9, 16, 25]),
     filtered_px: 256,
     lights: &[1, 4, 16, 64],
+    lights_size: Size { width: 480, height: 270 },
+    lights_samples: "64",
     shared_maps: 25,
     adaptive_px: 256,
     downs: &[1, 2, 4, 8, 16],
@@ -109,6 +132,8 @@ const QUICK: Extent = Extent {
     taps: (&[4, 25], &[1, 9]),
     filtered_px: 128,
     lights: &[1, 4, 16],
+    lights_size: Size { width: 96, height: 54 },
+    lights_samples: "64",
     shared_maps: 9,
     adaptive_px: 64,
     downs: &[1, 8],
@@ -187,27 +212,41 @@ fn alike(range_m: f32) -> Vec<String> {
 
 fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> Vec<Job> {
     let extent = if args.quick { QUICK } else { FULL };
-    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
-    let lit = [drawn, alike(range_m)].concat();
+    let lit = |size| {
+        let drawn = scene.options(args.size.unwrap_or(size), args.seed);
+        [drawn, alike(range_m)].concat()
+    };
+    let (many, lit) = (lit(extent.lights_size), lit(extent.size));
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
-    let truth = |section: &str, lights: u32, more: &[&str]| {
-        let count = lights.to_string();
-        let variant = if lights == FEW { "" } else { count.as_str() };
-        let sampled = ["--shadows", "--samples", extent.samples, "--lights", &count];
-        Job::new(scene, section, variant, &[&["truth"], &lit[..], &sampled, more].concat())
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    let few = FEW.to_string();
+    let truth = |section: &str, more: &[&str]| {
+        let sampled = ["--samples", extent.samples, "--lights", &few];
+        Job::new(scene, section, "", &[&["truth"], &lit[..], &sampled, more].concat())
     };
     let frames = ["--frames", extent.frames, "--warmup", extent.warmup];
     let timed = [&["--strategies", BASELINE, "--truth", "none"], &frames[..]].concat();
-    let compare = |section: &str, variant: &str, lights: u32, model: ShadowModel| {
+    let drawn = |section: &str, variant: &str, lit: &[&str], lights: u32, model: ShadowModel| {
         let (lights, model) = (lights.to_string(), model.to_string());
         let chosen = ["--lights", &lights, "--shadows", &model];
-        Job::new(scene, section, variant, &[&["compare"], &lit[..], &timed, &chosen].concat())
+        Job::new(scene, section, variant, &[&["compare"], lit, &timed, &chosen].concat())
+    };
+    let compare = |section: &str, variant: &str, lights: u32, model: ShadowModel| {
+        drawn(section, variant, &lit, lights, model)
     };
     let plain = |maps, px, taps| ShadowModel::Maps { maps, px, taps };
-    let mut jobs = vec![truth(TRUTH, FEW, &[]), truth(SEPARATED, FEW, &["--separated"])];
-    let others = extent.lights.iter().filter(|lights| **lights != FEW);
-    jobs.extend(others.map(|lights| truth(TRUTH, *lights, &[])));
+    let mut jobs = vec![
+        truth(TRUTH, &["--shadows"]),
+        truth(SEPARATED, &["--shadows", "--separated"]),
+        truth(UNSHADOWED, &[]),
+    ];
+    jobs.extend(extent.lights.iter().map(|lights| {
+        let count = lights.to_string();
+        let sampled = ["--shadows", "--samples", extent.lights_samples, "--lights", &count];
+        Job::new(scene, LIGHTS_TRUTH, &count, &[&["truth"], &many[..], &sampled].concat())
+    }));
     jobs.push(compare(NONE, "", FEW, ShadowModel::None));
+    jobs.push(compare(PIPELINE, "", FEW, ShadowModel::None));
     for atlas in extent.atlases {
         for maps in extent.maps {
             let Some(px) = side_that_fits(*atlas, FEW, *maps) else { continue };
@@ -230,7 +269,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
     for lights in extent.lights {
         let maps = extent.shared_maps;
         let Some(px) = side_that_fits(atlas, *lights, maps) else { continue };
-        let job = compare(LIGHTS, &lights.to_string(), *lights, plain(maps, px, 1));
+        let job = drawn(LIGHTS, &lights.to_string(), &many, *lights, plain(maps, px, 1));
         jobs.push(job.with(ATLAS, &atlas.to_string()));
     }
     let px = extent.adaptive_px;
@@ -268,16 +307,18 @@ mod tests {
     fn every_job_is_a_command_and_every_image_has_a_truth_of_as_many_lights() {
         for line in ["", "--quick"] {
             let jobs = jobs(line);
-            let truths: Vec<Option<&str>> = jobs
-                .iter()
-                .filter(|job| job.section == TRUTH)
-                .map(|job| job.option("--lights"))
-                .collect();
             for job in &jobs {
                 assert!(parse(&job.command).is_ok(), "{:?}", job.command);
-                assert!(truths.contains(&job.option("--lights")), "{}", job.name);
-                let known = COMPARED.contains(&job.section.as_str()) || job.section == APPROACH;
-                assert_eq!(known, job.command[1] == "compare", "{}", job.name);
+                let Some((_, truth)) = AGAINST.iter().find(|(section, _)| *section == job.section)
+                else {
+                    continue;
+                };
+                let alike = |other: &Job| {
+                    let options = ["--lights", "--size"];
+                    options.iter().all(|option| other.option(option) == job.option(option))
+                };
+                let truths = jobs.iter().filter(|other| other.section == *truth);
+                assert_eq!(truths.filter(|other| alike(other)).count(), 1, "{}", job.name);
             }
             for section in COMPARED.into_iter().chain([APPROACH]) {
                 assert!(jobs.iter().any(|job| job.section == section), "{line}: {section}");

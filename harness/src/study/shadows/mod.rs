@@ -3,14 +3,16 @@
 //!
 //! Each job draws four rectangles (or the number that it names) without culling. So no error comes from lists and no
 //! time from assignment. Errors are those against T, the truth with shadows. P is the exact visible share times the
-//! exact light without shadows. Its own error against T is the floor: no model of visible shares is below it.
+//! exact light without shadows. Its own error against T is the floor: no model of visible shares is below it. Another
+//! floor is the error of the pipeline without shadows against the truth without shadows: G-buffer, textures, area-light
+//! model.
 
 mod cells;
 mod claims;
-mod errors;
 mod jobs;
 mod page;
 
+use super::against_truth::{TruthOf, compare_with_truths};
 use super::slice::{Study, TakesMotion, atrium};
 use crate::report::markup::Html;
 
@@ -21,7 +23,7 @@ pub(crate) const STUDY: Study = Study {
     scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::None("shadow maps are drawn once, so the lights must stand still"),
-    after_run: errors::compare_with_truths,
+    after_run: |done| compare_with_truths(done, &jobs::AGAINST, TruthOf::Lights),
     headline: page::headline,
     findings: page::findings,
     front: |_| Html::default(),

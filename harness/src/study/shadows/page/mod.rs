@@ -6,7 +6,7 @@ mod pictures;
 mod table;
 
 use self::charts::{Sweep, swept};
-use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, steps};
+use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, pipeline_of, steps};
 use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
@@ -55,7 +55,7 @@ const SWEEPS: [Sweep; 5] = [
         section: LIGHTS,
         title: "Error by the lights in one atlas",
         note: "All lights share one atlas, so more lights have smaller maps. Each image is compared with T of as many \
-               lights. P is computed for one number of lights only, so no line is drawn.",
+               lights, at a smaller size than the others. P is computed for one number of lights only, so no line is drawn.",
         axis: ("Lights", ""),
         x: |entry| u32::try_from(entry.record.setting.lights).ok(),
         series: of_maps,
@@ -158,8 +158,16 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         let without = without.map_or_else(String::new, |error| {
             format!(" Without shadows it is {}.", difference(error))
         });
+        let pipeline = pipeline_of(done, scene, METRIC).map_or_else(String::new, |error| {
+            format!(
+                " The pipeline itself (G-buffer, textures, area-light model) is off by {}, without shadows and against the \
+                 truth without them. No map changes that.",
+                difference(error)
+            )
+        });
         found.push(format!(
-            "In {scene}, exact visible shares (P) have a FLIP of {} against the truth: the floor of all maps.{without}",
+            "In {scene}, exact visible shares (P) have a FLIP of {} against the truth: the floor of all \
+             maps.{without}{pipeline}",
             difference(floor)
         ));
     }
