@@ -134,7 +134,7 @@ fn rectangles_that_frames_subdivide_get_places_and_others_a_fixed_number() {
         let address = plan.records[site.first_map + 1][0];
         let [x, y] = plan.faces[site.first_face].origin;
         assert_eq!(address, x | y << 16);
-        let eye = glam::DVec3::new(1.0, 2.0, 3.0);
+        let eye = DVec3::new(1.0, 2.0, 3.0);
         let moved =
             plan.faces[site.first_face + 4].world_to_view * site.world_to_view(4, eye).inverse();
         let offset = moved.transform_point3(Vec3::ZERO).length();
