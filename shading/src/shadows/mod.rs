@@ -143,6 +143,8 @@ pub(crate) struct ShadowMaps {
     bound: BoundMaps,
     /// The trees of rectangles, if frames subdivide them.
     adaptive: Option<Adaptive>,
+    /// Maps of lights that have no tree.
+    fixed_maps: u32,
 }
 
 impl ShadowMaps {
@@ -192,7 +194,9 @@ impl ShadowMaps {
             Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
             RasterPass::ShadowMap { slopes: plan.slopes },
         )?;
+        let subdivided = plan.sites.len() as u32 * plan.maps;
         let mut maps = Self {
+            fixed_maps: plan.map_count - subdivided,
             figures,
             lights: lights.lights().to_vec(),
             drawn: (0..figures.faces).collect(),
@@ -209,12 +213,9 @@ impl ShadowMaps {
     /// Finds the faces of all maps, and counts them, where frames change them.
     fn count_maps(&mut self) {
         let Some(adaptive) = &self.adaptive else { return };
-        let maps = adaptive.maps_of_rectangles();
-        let (rectangles, maps) = maps.fold((0, 0), |(count, sum), maps| (count + 1, sum + maps));
-        let others = self.lights.len() as u32 - rectangles;
         self.drawn = adaptive.drawn_faces(self.faces.len());
         self.figures.faces = self.drawn.len() as u32;
-        self.figures.maps = others + maps;
+        self.figures.maps = self.fixed_maps + adaptive.maps_of_rectangles().sum::<u32>();
     }
 
     pub(crate) fn figures(&self) -> ShadowFigures {

@@ -16,22 +16,25 @@ impl Renderer {
     /// their size in the view. Does nothing with other models than
     /// [`ShadowModel::Adaptive`](crate::ShadowModel::Adaptive).
     ///
-    /// Call it before the passes of each frame that shades, and submit them in this order. It does not wait: answers
-    /// that are still on their way are taken by a later call.
+    /// Call it before the passes of each frame that shades, and submit them in this order: maps in commands that are
+    /// dropped are never drawn. It does not wait. Answers that are still on their way are taken by a later call.
     ///
     /// # Errors
     ///
     /// [`AssignError::OutOfMemory`](assign::AssignError::OutOfMemory) and
-    /// [`AssignError::TooLarge`](assign::AssignError::TooLarge).
+    /// [`AssignError::TooLarge`](assign::AssignError::TooLarge). The renderer then has no maps.
     pub fn refine_shadows(
         &mut self,
         view: &View,
         passes: &mut dyn Passes,
     ) -> Result<ShadowRefinement, ShadingError> {
-        match &mut self.shadows {
-            Some(maps) => maps.refine(view, &self.scene, &self.scene_group, passes),
-            None => Ok(ShadowRefinement::default()),
+        let Some(maps) = &mut self.shadows else { return Ok(ShadowRefinement::default()) };
+        let found = maps.refine(view, &self.scene, &self.scene_group, passes);
+        if found.is_err() {
+            // The trees know of maps that are not drawn.
+            self.shadows = None;
         }
+        found
     }
 
     /// Records the pass `shadow-banding` after depth and G-buffer of the prepared view: it looks for bands in the

@@ -1,6 +1,6 @@
 //! Rectangles are divided where frames show bands, and nowhere else.
 
-use assign::{EncoderPasses, Everything, Gpu, Light, LightBuffer, View};
+use assign::{Emitter, EncoderPasses, Everything, Gpu, Light, LightBuffer, View};
 use glam::Vec3;
 use scenes::{Material, Scene};
 use shading::{HdrImage, Mode, Renderer, ShadowModel};
@@ -178,6 +178,26 @@ fn rounds_wait_for_no_one() {
     assert!(waits.is_some_and(|waits| waits > 1), "{waits:?}");
     renderer.settle_shadows(&view).unwrap();
     assert_eq!(renderer.shadow_figures(), settled);
+}
+
+/// Polygons keep the largest fixed number of maps, and points one. Both lie in the same atlas.
+#[test]
+fn other_lights_keep_their_maps() {
+    let gpu = common::gpu();
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.2, 1.0)].map(|(x, z)| Vec3::new(x, 2.0, z));
+    let (polygon, middle) = Emitter::polygon(&corners).unwrap();
+    let polygon = Light::area(polygon, middle, 20.0, Vec3::ONE);
+    let point = Light::point(Vec3::new(-1.0, 2.0, 0.0), 20.0, Vec3::ONE);
+    let lights = LightBuffer::new(&gpu, &[point, light(), polygon]).unwrap();
+    let (scene, view) = (plates(), view());
+    let mut renderer = renderer_of(&gpu, &scene, &view, &lights, adaptive(64, 1, 20));
+    let figures = renderer.shadow_figures().unwrap();
+    assert_eq!((figures.maps, figures.faces), (1 + 4 + 9, 6 + 5 * 4 + 5 * 9));
+    renderer.settle_shadows(&view).unwrap();
+    let figures = renderer.shadow_figures().unwrap();
+    let (maps, _) = renderer.shadow_subdivision().unwrap();
+    assert_eq!(figures.maps, 1 + maps[0] + 9);
+    assert!(maps.len() == 1 && (5..=20).contains(&maps[0]), "{maps:?}");
 }
 
 #[test]
