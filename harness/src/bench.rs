@@ -55,7 +55,7 @@ impl Bench {
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 // The maps are those of other lights.
-                stage.cast_shadows(ShadowModel::None)?;
+                stage.cast_shadows(ShadowModel::None, false)?;
                 stage.set_up(&self.gpu, args)?;
                 self.stage.insert((key, stage))
             }

@@ -1,8 +1,9 @@
 //! The shadow maps of a stage.
 
-use shading::{ShadowFigures, ShadowModel};
+use shading::{OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
+    choice::Choice,
     cli::{CliError, LayerArgs, StageArgs},
     clock::PassClock,
     error::HarnessError,
@@ -15,21 +16,25 @@ use crate::{
 const REDRAWS: u32 = 7;
 
 impl Stage {
-    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. Returns a
-    /// warning if area lights got fewer maps than asked for.
+    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. If asked to, it
+    /// also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got fewer maps than asked for.
     ///
     /// # Errors
     ///
     /// [`CliError`] in a scene with suns, and the errors of
     /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows).
-    pub fn cast_shadows(&mut self, model: ShadowModel) -> Result<Option<String>, HarnessError> {
+    pub fn cast_shadows(
+        &mut self,
+        model: ShadowModel,
+        finds_occluders: bool,
+    ) -> Result<Option<String>, HarnessError> {
         self.shadows = ShadowModel::None;
         if model.is_on() && !self.suns.is_empty() {
             let accepted = "none in a scene with suns, which have no shadow maps";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
         self.shadow_draw_ms = None;
-        let Some(figures) = self.draw_maps(model)? else { return Ok(None) };
+        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
         self.shadows = model;
         let [width, height] = figures.atlas_px;
         say(format!(
@@ -52,12 +57,20 @@ impl Stage {
 
     /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter the only
     /// one.
-    fn draw_maps(&mut self, model: ShadowModel) -> Result<Option<ShadowFigures>, HarnessError> {
+    fn draw_maps(
+        &mut self,
+        model: ShadowModel,
+        finds_occluders: bool,
+    ) -> Result<Option<ShadowFigures>, HarnessError> {
         if !model.is_on() {
             return Ok(self.renderer.cast_shadows(&self.lights, model)?);
         }
         let mut clock = PassClock::new(&self.gpu);
-        let figures = self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        let mut figures = self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        if finds_occluders {
+            let farthest = OccluderDepth::Farthest;
+            figures = Some(self.renderer.find_occluders_in(farthest, &mut clock)?);
+        }
         let ms = |clock: &mut PassClock| -> Result<f64, HarnessError> {
             Ok(clock.finish()?.iter().map(|(_, ms)| ms).sum())
         };
@@ -82,9 +95,19 @@ impl Stage {
             maps: figures.maps,
             faces: figures.faces,
             atlas_px: figures.atlas_px,
+            occluder_bytes: Some(figures.occluder_bytes).filter(|bytes| *bytes > 0),
             draw_ms: self.shadow_draw_ms,
         })
     }
+}
+
+/// Refuses strategies that leave out hidden lights where no maps say which these are.
+pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<(), CliError> {
+    let hides = choices.iter().find(|choice| choice.leaves_out_hidden() && !model.is_on());
+    hides.map_or(Ok(()), |choice| {
+        let accepted = "combined with --shadows maps:N,PX: without shadow maps, /occ does not know what hides lights";
+        Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted))
+    })
 }
 
 /// Refuses shadows of lights without maps, and on what maps do not shade.

@@ -68,6 +68,7 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         maps: 27,
         faces: 27 * 5,
         atlas_px: [9 * 128, 9 * 128],
+        occluder_bytes: None,
         draw_ms: None,
     };
     assert_eq!((plain.len(), shadowed.len()), (6, 6));

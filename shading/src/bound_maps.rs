@@ -31,6 +31,11 @@ impl BoundMaps {
         &self.atlas
     }
 
+    /// The records of lights and maps.
+    pub(crate) fn records(&self) -> &wgpu::Buffer {
+        &self.records
+    }
+
     /// Layout entries of group 2, for the stages that light.
     pub(crate) fn layout(stages: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 2] {
         [

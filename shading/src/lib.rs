@@ -78,7 +78,7 @@ pub use layers::{
 pub use lighting::Lighting;
 pub use lighting_inputs::{LightingRecord, SunRecord, SunsRecord};
 pub use lighting_options::{Cut, LightingOptions};
-pub use list_check::{ListCheck, ListsTruth, MissedPair};
+pub use list_check::{HiddenPairs, ListCheck, ListsTruth, MissedPair};
 pub use materials::MaterialRecord;
 pub use mode::Mode;
 pub use moving_lights::MovingLights;
@@ -92,7 +92,7 @@ pub use shaders::lighting_shader;
 pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::ShadowFigures;
+pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

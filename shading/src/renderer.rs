@@ -182,7 +182,10 @@ impl Renderer {
             (false, false, 1) => SampleDomain::OpaqueSurfaces,
             (false, false, _) => SampleDomain::NearSurfaces,
         };
-        Frame::new(view, lights)
+        let frame = Frame::new(view, lights);
+        let occluders = self.shadows.as_ref().and_then(ShadowMaps::occluders);
+        let frame = occluders.map_or(frame, |occluders| frame.with_occluders(occluders));
+        frame
             .sampled_at(samples)
             .with_seed(self.seed)
             .with_depth(&self.targets.depth)

@@ -53,10 +53,11 @@
 //! highlight whose part of the emitter is hidden stays visible: the separation error.
 
 mod cast;
+mod occluders;
 mod plan;
 mod points;
 
-use assign::{AssignError, Gpu, Light, LightBuffer, Passes, ViewUniform};
+use assign::{AssignError, Gpu, Light, LightBuffer, Occluders, Passes, ViewUniform};
 use bytemuck::{Zeroable, bytes_of, cast_slice};
 
 use crate::{
@@ -67,6 +68,8 @@ use crate::{
     targets::DEPTH_FORMAT,
 };
 
+pub use occluders::{OCCLUSION_TEST, OccluderDepth};
+use occluders::Pyramid;
 use plan::{Face, Plan};
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
@@ -89,6 +92,8 @@ pub struct ShadowFigures {
     pub faces: u32,
     /// Width and height of the atlas, texels.
     pub atlas_px: [u32; 2],
+    /// Bytes of what hides lights from groups ([`Renderer::find_occluders`](crate::Renderer::find_occluders)); 0 without it.
+    pub occluder_bytes: u64,
 }
 
 impl ShadowFigures {
@@ -115,6 +120,8 @@ pub(crate) struct ShadowMaps {
     /// Bytes from one face's view to the next.
     view_stride: u32,
     bound: BoundMaps,
+    /// What hides lights from groups, if asked for.
+    pyramid: Option<Pyramid>,
 }
 
 impl ShadowMaps {
@@ -147,6 +154,7 @@ impl ShadowMaps {
             maps: plan.map_count,
             faces: plan.faces.len() as u32,
             atlas_px: plan.size,
+            occluder_bytes: 0,
         };
         let records_bytes: &[u8] = cast_slice(&plan.records);
         let records = gpu.storage("shadow records", records_bytes.len() as u64)?;
@@ -170,6 +178,7 @@ impl ShadowMaps {
             views,
             view_stride,
             bound: BoundMaps::new(model, atlas, records),
+            pyramid: None,
         })
     }
 
@@ -219,6 +228,25 @@ impl ShadowMaps {
                 scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
             }
         });
+        if let Some(pyramid) = &self.pyramid {
+            pyramid.record(passes);
+        }
+    }
+
+    /// Makes the pyramid of depths. [`record`](Self::record) fills it from then on.
+    pub(crate) fn make_pyramid(
+        &mut self,
+        gpu: &Gpu,
+        kept: OccluderDepth,
+    ) -> Result<&Pyramid, ShadingError> {
+        let pyramid = Pyramid::new(gpu, self.bound.atlas(), self.figures.atlas_px, kept)?;
+        self.figures.occluder_bytes = pyramid.bytes();
+        Ok(self.pyramid.insert(pyramid))
+    }
+
+    /// What hides lights from groups; `None` without a pyramid.
+    pub(crate) fn occluders(&self) -> Option<Occluders<'_>> {
+        Some(self.pyramid.as_ref()?.occluders(self.bound.records()))
     }
 }
 

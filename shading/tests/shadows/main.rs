@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod errors;
+mod occlusion;
 mod strategies;
 mod truth;
 mod walls;
