@@ -26,6 +26,7 @@ use crate::{
     report::listed,
     results::{RefusedStrategy, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
+    shadows::Casting,
     sight::untested,
     stage::Stage,
     strategy::{BASELINE, engines},
@@ -92,7 +93,8 @@ pub fn compare_on(
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.sample_pixels(args.msaa)?;
     let finds_occluders = choices.iter().any(Choice::leaves_out_hidden);
-    let fewer_maps = stage.cast_shadows(args.shadows, finds_occluders)?;
+    let fewer_maps =
+        stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders })?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };

@@ -25,7 +25,7 @@ use crate::{
     cli::{CliError, ExplainArgs, LayerArgs},
     compare::DEFAULT_PATH_FRAMES,
     error::HarnessError,
-    shadows::check_shadows,
+    shadows::{Casting, check_shadows},
     stage::Stage,
     strategy::{BASELINE, Method},
 };
@@ -106,7 +106,7 @@ pub fn set_stage<'a>(
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
-    stage.cast_shadows(args.shadows, false)?;
+    stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders: false })?;
     if args.path {
         stage.follow_path(frames);
     }

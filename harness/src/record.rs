@@ -13,8 +13,8 @@ use crate::{
     measure::{ListsFigures, Plan, Shown, Timed},
     moving::Moving,
     results::{
-        Clock, Errors, HiddenFigures, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record,
-        Setting, Times, WorstPixel, mean,
+        Clock, Errors, HiddenFigures, ImageFigures, Images, LayerSetting, ListFigures, Operations,
+        Record, Setting, Times, WorstPixel, mean,
     },
     schedule::rounds,
     stage::Stage,

@@ -1,6 +1,6 @@
 //! The shadow maps of a stage.
 
-use shading::{OccluderDepth, ShadowFigures, ShadowModel};
+use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
     choice::Choice,
@@ -15,6 +15,15 @@ use crate::{
 /// How often a GPU draws all maps again, to time it.
 const REDRAWS: u32 = 7;
 
+/// What shadow maps are cast for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Casting {
+    /// How light ends at the lights' ranges: what lies beyond hides nothing.
+    pub cut: Cut,
+    /// Whether strategies ask what hides lights from groups.
+    pub finds_occluders: bool,
+}
+
 impl Stage {
     /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. If asked to, it
     /// also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got fewer maps than asked for.
@@ -26,8 +35,11 @@ impl Stage {
     pub fn cast_shadows(
         &mut self,
         model: ShadowModel,
-        finds_occluders: bool,
+        Casting { cut, finds_occluders }: Casting,
     ) -> Result<Option<String>, HarnessError> {
+        let specular_reach = self.specular_reach;
+        let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
+        self.renderer.cast_shadows_within(lit.ranges_lit());
         self.shadows = ShadowModel::None;
         if model.is_on() && !self.suns.is_empty() {
             let accepted = "none in a scene with suns, which have no shadow maps";

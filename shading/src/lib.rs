@@ -6,6 +6,7 @@
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
 //! | `shadow-maps` | once, with a [`ShadowModel`] | triangles | depth from the lights |
+//! | `occluders` | once, where a strategy leaves out hidden lights | depth from the lights | their farthest depths, by blocks of texels |
 //! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
@@ -40,10 +41,12 @@ mod list_check;
 mod loop_rounds;
 pub mod ltc;
 mod materials;
+mod mesh_buffers;
 mod mips;
 mod mode;
 mod moving_lights;
 mod operations;
+mod pieces;
 mod pixel_group;
 mod pixel_pass;
 mod probe;

@@ -38,6 +38,8 @@ pub struct Renderer {
     pub(crate) layers: Option<LayerScene>,
     /// Maps of the lights' shadows.
     pub(crate) shadows: Option<ShadowMaps>,
+    /// How far from their lights samples may lie that shadow maps serve, in ranges of the lights.
+    pub(crate) shadow_ranges: f32,
     /// The pass that makes the image of several samples per pixel.
     pub(crate) resolve: Option<Resolve>,
 }
@@ -71,6 +73,7 @@ impl Renderer {
             targets,
             layers: None,
             shadows: None,
+            shadow_ranges: f32::INFINITY,
             resolve: None,
         })
     }
@@ -102,6 +105,7 @@ impl Renderer {
             shared,
             layers: None,
             shadows: None,
+            shadow_ranges: f32::INFINITY,
             resolve: None,
         })
     }

@@ -2,8 +2,8 @@
 
 use assign::{Assignment, Counters, EncoderPasses, Gpu};
 use shading::{
-    HiddenPairs, LayerSamples, LightingOptions, ListCheck, ListsTruth, Mode, Operations, count_operations,
-    record_for_probe, traced::GBufferSamples, visit_layer_lists, visit_lists,
+    HiddenPairs, LayerSamples, LightingOptions, ListCheck, ListsTruth, Mode, Operations,
+    count_operations, record_for_probe, traced::GBufferSamples, visit_layer_lists, visit_lists,
 };
 
 use crate::{
@@ -102,7 +102,9 @@ pub(super) fn count(
                 is_forward,
                 &mut |samples, lists| {
                     lengths.add(samples, lists, pixels);
-                    let pairs = surfaces.as_ref().and_then(|at| check.hidden(samples, lists, at));
+                    let pairs = surfaces
+                        .as_ref()
+                        .and_then(|at| check.hidden(samples, lists, at, strategy.needs().normals));
                     if let Some(pairs) = pairs {
                         *hidden.get_or_insert_default() += pairs;
                     }

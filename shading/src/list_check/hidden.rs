@@ -1,12 +1,13 @@
 //! Lights that lists leave out because surfaces hide them, against exact rays.
 
 use assign::{ENTRY_LIGHT, ListsSnapshot};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
     LightBvh, Samples,
     traced::{GBufferSamples, Numbers, TracedScene, direct_light},
-    truth::EDGE,
+    truth::is_missed,
 };
 
 /// Pairs of directions towards an area light that are traced, each the start of a ray.
@@ -41,13 +42,15 @@ impl std::ops::AddAssign for HiddenPairs {
     }
 }
 
-/// Traces exact rays for the lights that lists leave out. `surfaces` are those of the frame's pixels.
+/// Traces exact rays for the lights that lists leave out. `surfaces` are those of the frame's pixels. With `knows_normals`,
+/// only lights above the sample's horizon count.
 pub(super) fn hidden_pairs(
     bvh: &LightBvh<'_>,
     samples: &Samples,
     lists: &ListsSnapshot,
     surfaces: &GBufferSamples,
     scene: &TracedScene<'_>,
+    knows_normals: bool,
 ) -> HiddenPairs {
     let of_sample = |ix: usize| {
         let mut listed: Vec<u32> = lists
@@ -60,10 +63,14 @@ pub(super) fn hidden_pairs(
         if !listed.is_sorted() {
             listed.sort_unstable();
         }
+        let [point, normal] =
+            [&samples.positions, &samples.normals].map(|of| DVec3::from(of[ix].map(f64::from)));
+        let normal = knows_normals.then_some(normal);
         let mut left_out = Vec::new();
-        bvh.lights_at(samples.positions[ix], |light, reach| {
-            if reach > EDGE && listed.binary_search(&light).is_err() {
-                left_out.push(light);
+        bvh.lights_at(samples.positions[ix], |slot, _| {
+            let light = &bvh.lights()[slot as usize];
+            if listed.binary_search(&slot).is_err() && is_missed(light, 0, point, normal) {
+                left_out.push(slot);
             }
         });
         let mut found = HiddenPairs { removed: left_out.len() as u64, ..HiddenPairs::default() };
@@ -77,7 +84,7 @@ pub(super) fn hidden_pairs(
             let light = &bvh.lights()[slot as usize];
             let numbers = Numbers::new(u64::from(pixel)).part(u64::from(slot));
             let added = direct_light(light, &surface, Some(scene), AREA_RAYS, numbers).mean;
-            let is_seen = u64::from(added != glam::DVec3::ZERO);
+            let is_seen = u64::from(added != DVec3::ZERO);
             match light.shape {
                 assign::LightShape::Area(_) => found.seen_areas += is_seen,
                 _ => found.seen += is_seen,

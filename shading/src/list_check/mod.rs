@@ -134,14 +134,16 @@ impl<'a> ListCheck<'a> {
     }
 
     /// The pairs that lists leave out, and those of them that exact rays see. `surfaces` are those of the frame's pixels.
+    /// `knows_normals` is that of [`check`](Self::check).
     /// `None` without a scene.
     pub fn hidden(
         &self,
         samples: &Samples,
         lists: &ListsSnapshot,
         surfaces: &GBufferSamples,
+        knows_normals: bool,
     ) -> Option<HiddenPairs> {
-        Some(hidden_pairs(self.bvh, samples, lists, surfaces, self.scene?))
+        Some(hidden_pairs(self.bvh, samples, lists, surfaces, self.scene?, knows_normals))
     }
 
     /// Checks a frame's lists against every sample. `knows_normals` says whether the strategy may leave out lights
@@ -173,7 +175,8 @@ impl<'a> ListCheck<'a> {
             })
             .collect();
         runs.par_sort_unstable_by_key(|run| samples.groups[order[run.start] as usize]);
-        let check = Check { bvh, known, places: &places, samples, lists, knows_normals, ignores_hidden };
+        let check =
+            Check { bvh, known, places: &places, samples, lists, knows_normals, ignores_hidden };
         runs.par_chunks(RUNS_AT_ONCE)
             .map_init(
                 || Marks::new(bvh.lights().len()),

@@ -30,6 +30,13 @@ impl Renderer {
         Ok(figures)
     }
 
+    /// Has maps that are cast afterwards leave out what lies beyond so many ranges of its light: it hides no sample within
+    /// them. 1 serves lights that end at their range, and [`LightingOptions::ranges_lit`](crate::LightingOptions::ranges_lit)
+    /// says what other options need. Without this call, maps hold all that a face sees. Images are the same.
+    pub fn cast_shadows_within(&mut self, ranges: f32) {
+        self.shadow_ranges = ranges;
+    }
+
     /// [`cast_shadows`](Self::cast_shadows), but records the pass `shadow-maps` into `passes`. The caller submits them
     /// before the first frame that reads the maps, and can time them.
     ///
@@ -47,7 +54,7 @@ impl Renderer {
         if !model.is_on() {
             return Ok(None);
         }
-        let maps = ShadowMaps::new(&self.gpu, &self.scene, lights, model)?;
+        let maps = ShadowMaps::new(&self.gpu, &self.scene, lights, model, self.shadow_ranges)?;
         let figures = maps.figures();
         self.shadows = Some(maps);
         self.record_shadow_maps(passes);
@@ -85,8 +92,7 @@ impl Renderer {
     /// Those of [`find_occluders_in`](Self::find_occluders_in).
     pub fn find_occluders(&mut self, kept: OccluderDepth) -> Result<ShadowFigures, ShadingError> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let figures =
-            self.find_occluders_in(kept, &mut EncoderPasses { encoder: &mut encoder })?;
+        let figures = self.find_occluders_in(kept, &mut EncoderPasses { encoder: &mut encoder })?;
         self.gpu.queue.submit([encoder.finish()]);
         Ok(figures)
     }

@@ -10,8 +10,9 @@
 //!    rectangles.
 //! 2. [`plan`] gives each point the faces of a cube, half a cube or a cone, and each face its place in one atlas. If
 //!    the maps do not fit, all area lights get fewer.
-//! 3. [`ShadowMaps::record`] draws the depth of all triangles into every face, from both sides, because both sides of
-//!    a triangle block light in the [truth](crate::traced). Alpha masks keep their holes.
+//! 3. [`ShadowMaps::record`] draws the depth of triangles into every face, from both sides, because both sides of
+//!    a triangle block light in the [truth](crate::traced). Alpha masks keep their holes. A face leaves out parts of the
+//!    scene beside its frustum, and beyond the light's range where no sample lies ([`sight`]).
 //! 4. `shadow.wesl` looks a sample up in all maps of a light. Points below the sample's horizon do not count: the
 //!    light without shadows leaves them out already.
 //!
@@ -56,6 +57,7 @@ mod cast;
 mod occluders;
 mod plan;
 mod points;
+mod sight;
 
 use assign::{AssignError, Gpu, Light, LightBuffer, Occluders, Passes, ViewUniform};
 use bytemuck::{Zeroable, bytes_of, cast_slice};
@@ -68,9 +70,10 @@ use crate::{
     targets::DEPTH_FORMAT,
 };
 
-pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use occluders::Pyramid;
+pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::{Face, Plan};
+use sight::Sight;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
 const MOST_ATLAS_PX: u32 = 1 << 15;
@@ -120,12 +123,14 @@ pub(crate) struct ShadowMaps {
     /// Bytes from one face's view to the next.
     view_stride: u32,
     bound: BoundMaps,
+    /// How far samples may lie that lights reach, in ranges of the lights.
+    ranges: f32,
     /// What hides lights from groups, if asked for.
     pyramid: Option<Pyramid>,
 }
 
 impl ShadowMaps {
-    /// Plans the maps of `lights` and allocates them.
+    /// Plans the maps of `lights` and allocates them. Samples may lie up to `ranges` of the lights' ranges from them.
     ///
     /// # Errors
     ///
@@ -136,6 +141,7 @@ impl ShadowMaps {
         scene: &SceneGpu,
         lights: &LightBuffer,
         model: ShadowModel,
+        ranges: f32,
     ) -> Result<Self, ShadingError> {
         check_device(gpu)?;
         if lights.order().is_on_gpu() || lights.live_count().is_some() {
@@ -177,7 +183,8 @@ impl ShadowMaps {
             pipelines,
             views,
             view_stride,
-            bound: BoundMaps::new(model, atlas, records),
+            bound: BoundMaps::new(model, ranges, atlas, records),
+            ranges,
             pyramid: None,
         })
     }
@@ -199,7 +206,7 @@ impl ShadowMaps {
         if is_same { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 
-    /// Records the pass `shadow-maps`: the depth of all triangles in every face.
+    /// Records the pass `shadow-maps`: the depth of all triangles that a face may show.
     pub(crate) fn record(
         &self,
         scene: &SceneGpu,
@@ -225,7 +232,10 @@ impl ShadowMaps {
                 pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
                 pass.set_scissor_rect(x, y, width, height);
                 pass.set_bind_group(0, &self.views, &[ix * self.view_stride]);
-                scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
+                let sight = Sight::new(face, self.ranges);
+                let may_see = |bounds| sight.may_see(bounds);
+                let pipeline = |key| self.pipelines.get(key);
+                scene.draw_pieces(pass, scene.has_mask(), may_see, pipeline);
             }
         });
         if let Some(pyramid) = &self.pyramid {

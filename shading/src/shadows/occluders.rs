@@ -177,29 +177,4 @@ fn shader(kept: OccluderDepth) -> Shader<'static> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The rules of `pyramid.wesl`.
-    fn origin([width, height]: [u32; 2], level: u32) -> [u32; 2] {
-        if level == 0 { [0, 0] } else { [width, height - (height >> (level - 1))] }
-    }
-
-    #[test]
-    fn levels_lie_apart_inside_their_texture_and_its_size_tells_that_of_the_first() {
-        for base in [[16, 16], [16, 32], [25, 75], [99, 17], [1000, 333], [8192, 8191]] {
-            let [width, height] = texture_size(base);
-            assert_eq!((2 * width + 2) / 3, base[0], "{base:?}");
-            let mut end = 0;
-            for (level, [w, h]) in (0..).zip(level_sizes(base)) {
-                let [x, y] = origin(base, level);
-                assert!(x + w <= width && y + h <= height, "{base:?}: level {level}");
-                assert_eq!([w, h], base.map(|side| side >> level));
-                if level > 0 {
-                    assert!(x >= base[0] && y >= end, "{base:?}: level {level} begins at {y}");
-                    end = y + h;
-                }
-            }
-        }
-    }
-}
+mod tests;

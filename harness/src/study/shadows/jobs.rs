@@ -2,6 +2,7 @@
 
 use shading::{MAX_MAP_PX, MIN_MAP_PX, ShadowModel};
 
+use super::occlusion;
 use crate::{
     bench::Bench,
     cli::{Size, StudyArgs},
@@ -36,10 +37,10 @@ const RANGE_SHARE: f32 = 0.5;
 const FEW: u32 = 4;
 
 /// How much the study looks at.
-struct Extent {
-    size: Size,
-    frames: &'static str,
-    warmup: &'static str,
+pub(crate) struct Extent {
+    pub(crate) size: Size,
+    pub(crate) frames: &'static str,
+    pub(crate) warmup: &'static str,
     /// Samples per pixel of T and P. From 64 on, T's rays only estimate the visible share.
     samples: &'static str,
     /// Sides of atlases, texels; the last one is that of `LIGHTS`.
@@ -56,7 +57,7 @@ struct Extent {
     shared_maps: u32,
 }
 
-const FULL: Extent = Extent {
+pub(crate) const FULL: Extent = Extent {
     size: Size { width: 1280, height: 720 },
     frames: "32",
     warmup: "4",
@@ -70,7 +71,7 @@ const FULL: Extent = Extent {
     shared_maps: 25,
 };
 
-const QUICK: Extent = Extent {
+pub(crate) const QUICK: Extent = Extent {
     size: Size { width: 96, height: 54 },
     frames: "1",
     warmup: "0",
@@ -106,11 +107,18 @@ pub(crate) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let ([core, _], _) = scene.boxes(bench)?;
-    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
+    let mut jobs = plan(args, scene, core.diagonal() * RANGE_SHARE);
+    jobs.push(occlusion::job(args, scene, extent_of(args)));
+    Ok(jobs)
+}
+
+/// How much the study looks at.
+fn extent_of(args: &StudyArgs) -> &'static Extent {
+    if args.quick { &QUICK } else { &FULL }
 }
 
 fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
-    let extent = if args.quick { QUICK } else { FULL };
+    let extent = extent_of(args);
     let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     // All digits: in a scene of millimetres, a rounded range would differ.

@@ -9,6 +9,7 @@ mod cells;
 mod claims;
 mod errors;
 mod jobs;
+mod occlusion;
 mod page;
 
 use super::slice::{Study, TakesMotion, atrium};

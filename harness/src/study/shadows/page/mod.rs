@@ -7,6 +7,7 @@ mod table;
 use self::charts::{Sweep, swept};
 use super::cells::{METRIC, atlas, atlases, floor_of, least, maps, steps};
 use super::jobs::{COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
+use super::occlusion;
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
 use crate::study::data::{Entry, entries};
@@ -88,6 +89,7 @@ pub(crate) fn parts(
     let all = COMPARED.map(|section| entries(done, scene, section)).concat();
     let body = table::table(done, scene, &all);
     parts.push(Part::new("table", "All figures", TABLE_NOTE, body));
+    parts.push(occlusion::part(done, scene));
     parts.push(Part::new(
         "pictures",
         "What maps look like",
@@ -147,5 +149,6 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
             difference(floor)
         ));
     }
+    found.extend(occlusion::finding(done, scene));
     found
 }
