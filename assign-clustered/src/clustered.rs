@@ -156,6 +156,7 @@ impl Assignment for Clustered {
             depth: self.gather.is_some(),
             normals: self.options.reads_normals(),
             hierarchy: self.culler.reads_hierarchy(),
+            occluders: self.culler.reads_occluders(),
             materials: self.options.reads_materials(),
             ..Needs::default()
         }

@@ -134,7 +134,11 @@ impl Assignment for ZBins {
     }
 
     fn needs(&self) -> Needs {
-        Needs { hierarchy: self.culler.reads_hierarchy(), ..Needs::default() }
+        Needs {
+            hierarchy: self.culler.reads_hierarchy(),
+            occluders: self.culler.reads_occluders(),
+            ..Needs::default()
+        }
     }
 
     fn updates_groups(&self) -> bool {

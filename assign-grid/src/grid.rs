@@ -146,6 +146,7 @@ impl Assignment for Grid {
         Needs {
             depth: self.visible.is_some(),
             hierarchy: self.culler.reads_hierarchy(),
+            occluders: self.culler.reads_occluders(),
             ..Needs::default()
         }
     }

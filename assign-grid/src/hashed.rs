@@ -98,7 +98,12 @@ impl Assignment for HashedCells {
     }
 
     fn needs(&self) -> Needs {
-        Needs { depth: true, hierarchy: self.culler.reads_hierarchy(), ..Needs::default() }
+        Needs {
+            depth: true,
+            hierarchy: self.culler.reads_hierarchy(),
+            occluders: self.culler.reads_occluders(),
+            ..Needs::default()
+        }
     }
 
     fn updates_groups(&self) -> bool {

@@ -116,7 +116,8 @@ impl Assignment for PerModel {
 
     fn needs(&self) -> Needs {
         let hierarchy = self.culler.reads_hierarchy();
-        Needs { models: true, hierarchy, ..Needs::default() }
+        let occluders = self.culler.reads_occluders();
+        Needs { models: true, hierarchy, occluders, ..Needs::default() }
     }
 
     fn is_view_bound(&self) -> bool {

@@ -122,7 +122,8 @@ impl Assignment for Tiled {
 
     fn needs(&self) -> Needs {
         let hierarchy = self.culler.reads_hierarchy();
-        Needs { depth: self.is_explicit(), hierarchy, ..Needs::default() }
+        let occluders = self.culler.reads_occluders();
+        Needs { depth: self.is_explicit(), hierarchy, occluders, ..Needs::default() }
     }
 
     fn updates_groups(&self) -> bool {

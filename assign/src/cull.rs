@@ -9,7 +9,7 @@ use crate::{
     GroupShape, Groups, KeptBindGroup, LightKinds, LightLists, LightSource, LightTraits,
     ListsBindings, Lookup, Passes, StrategyModule,
     cull_kernel::{KernelKey, Kernels, LISTS_GROUP, Variant},
-    entries::{entry, storage_entry},
+    entries::{UNFILTERED, entry, storage_entry, texture, texture_entry},
     limits::{check_limits, storage_buffer_limits},
     touched_groups::{Dispatch, TouchedGroups},
 };
@@ -81,7 +81,9 @@ impl Culler {
         let strategy = bindings.iter().filter(is_storage).count() as u32;
         let hierarchy = settings.source == LightSource::Hierarchy;
         // Three for the lights, records and entries.
-        storage_buffer_limits(5 + strategy + u32::from(sparse) + u32::from(hierarchy))
+        let occlusion = settings.occlusion.is_some();
+        let optional: u32 = [sparse, hierarchy, occlusion].into_iter().map(u32::from).sum();
+        storage_buffer_limits(5 + strategy + optional)
     }
 
     /// Makes the layouts. [`compile`](Self::compile) makes the pipelines, or else the first frame that needs them.
@@ -207,6 +209,13 @@ impl Culler {
         if self.module.wesl().finds_bounds_by_lanes() {
             entries.push(depth.insert(frame.depth_image(&self.label)?).entry(2));
         }
+        if self.reads_occluders() {
+            let missing = "occluders";
+            let occluders = frame
+                .occluders
+                .ok_or_else(|| AssignError::Missing { strategy: self.label.clone(), missing })?;
+            entries.extend([texture(3, occluders.depths), entry(4, occluders.records)]);
+        }
         let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
         let bound = if self.is_update { &mut self.touched_source } else { &mut self.source };
         bound.bind(gpu, "cull source", &layout, &entries);
@@ -215,7 +224,7 @@ impl Culler {
     }
 
     /// Layout of the kernel's input: the groups if not all are culled, light nodes if there is a hierarchy, the
-    /// depth buffer if lanes find bounds.
+    /// depth buffer if lanes find bounds, occluders if lists leave out hidden lights.
     fn source_layout(&self, gpu: &Gpu, sparse: bool) -> wgpu::BindGroupLayout {
         let stages = wgpu::ShaderStages::COMPUTE;
         let mut entries = Vec::new();
@@ -227,6 +236,9 @@ impl Culler {
         }
         if self.module.wesl().finds_bounds_by_lanes() {
             entries.push(DepthImage::layout(2, stages, false));
+        }
+        if self.reads_occluders() {
+            entries.extend([texture_entry(3, stages, UNFILTERED), storage_entry(4, stages, true)]);
         }
         gpu.bind_group_layout("cull source", &entries)
     }
@@ -295,6 +307,11 @@ impl Culler {
     /// Whether the driver reads the hierarchy over the lights.
     pub fn reads_hierarchy(&self) -> bool {
         self.variant.settings.source == LightSource::Hierarchy
+    }
+
+    /// Whether lists leave out lights that the frame's occluders hide.
+    pub fn reads_occluders(&self) -> bool {
+        self.variant.settings.occlusion.is_some()
     }
 
     /// How shading finds a sample's group.

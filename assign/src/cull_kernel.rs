@@ -95,7 +95,12 @@ impl Variant {
         let tests = self.settings.tests;
         let is_hierarchy = self.settings.source == LightSource::Hierarchy;
         let levels = if is_hierarchy { lights.levels } else { 0 };
-        Shader::new(LISTS_GROUP)
+        let occlusion = self.settings.occlusion;
+        let shader = match occlusion {
+            Some(test) => test.mount(Shader::new(LISTS_GROUP)),
+            None => Shader::new(LISTS_GROUP),
+        };
+        shader
             .module("package::cull", include_str!("shaders/cull.wesl"))
             .module("package::walk", include_str!("shaders/walk.wesl"))
             .module("package::tree", include_str!("shaders/tree.wesl"))
@@ -106,6 +111,7 @@ impl Variant {
             .module("package::gloss", include_str!("shaders/gloss.wesl"))
             .module("package::reflected", include_str!("shaders/reflected.wesl"))
             .module("package::group_reach", include_str!("shaders/group_reach.wesl"))
+            .flag("occlusion", occlusion.is_some())
             .flag("specular_reach", self.facing == Facing::SpecularReach)
             .flag("bounds_by_lanes", wesl.finds_bounds_by_lanes())
             .flag("facing", matches!(self.facing, Facing::Horizon | Facing::HorizonAndGloss))

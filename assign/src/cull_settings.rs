@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use crate::{AssignError, GroupShape, Storage};
+use crate::{AssignError, GroupShape, OcclusionTest, Storage};
 
 /// Tests of a light against a frustum. A light is a hit unless a test separates it from the
 /// frustum.
@@ -119,7 +119,8 @@ pub enum AreaBounds {
     Ball,
 }
 
-/// The user's settings of the culling driver. Lists are complete under any settings but `screen_rectangle`.
+/// The user's settings of the culling driver. Lists are complete under any settings but `screen_rectangle`; with
+/// `occlusion`, except for lights that add nothing because they are hidden.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CullSettings {
     /// Tests of groups that are frusta. Boxes use the nearest point (NP, NPT), which is exact for
@@ -136,11 +137,14 @@ pub struct CullSettings {
     /// the border of a wide view (Mara and McGuire 2013, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D
     /// Sphere"). Groups that are boxes ignore it.
     pub screen_rectangle: bool,
+    /// The renderer's test of whether surfaces hide a light from a group. Lists then leave out hidden lights, and each
+    /// frame must have [`occluders`](crate::Frame::occluders). `None` keeps every light in range.
+    pub occlusion: Option<OcclusionTest>,
 }
 
 impl CullSettings {
-    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, and the storage's name:
-    /// `/mask`, `/tree`. Defaults add nothing, and tests appear only if groups are frusta.
+    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, `/occ`, and the storage's
+    /// name: `/mask`, `/tree`. Defaults add nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
         let is_frustum = matches!(shape, GroupShape::Frustum | GroupShape::MaskedFrustum);
@@ -156,6 +160,9 @@ impl CullSettings {
         if let Some(name) = self.storage.name() {
             suffix += "/";
             suffix += name;
+        }
+        if self.occlusion.is_some() {
+            suffix += "/occ";
         }
         if is_frustum && self.screen_rectangle {
             suffix += "/rect";

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     AssignError, FrameLights, FrameWrites, Gpu, KeptBindGroup, Light, LightBuffer, LightChanges,
-    LightOrder, ModelBox, Projection, View, ViewUniform,
+    LightOrder, ModelBox, Occluders, Projection, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
     plain_wgsl::FRAME_BINDINGS,
 };
@@ -66,6 +66,8 @@ pub struct Needs {
     /// each frame with new lights whatever the strategy needs, because `record` also copies the lights
     /// to where every strategy and shading read them.
     pub hierarchy: bool,
+    /// What hides lights from groups ([`Frame::occluders`]).
+    pub occluders: bool,
 }
 
 /// One frame's inputs. The optional fields are there for the strategies that
@@ -101,6 +103,9 @@ pub struct Frame<'a> {
     /// the surfaces and the models. Only a strategy that [updates groups](crate::Assignment::updates_groups)
     /// gets it, from [`Touched`](crate::Touched).
     pub changes: Option<&'a LightChanges>,
+    /// What hides lights from groups, for lists that leave out hidden lights
+    /// ([`CullSettings::occlusion`](crate::CullSettings::occlusion)).
+    pub occluders: Option<Occluders<'a>>,
     /// A number that differs from frame to frame, for what is random ([`Stochastic`](crate::Stochastic)). Shading must
     /// get the same.
     pub seed: u32,
@@ -120,6 +125,7 @@ impl<'a> Frame<'a> {
             models: None,
             surface_bounds: None,
             changes: None,
+            occluders: None,
             seed: 0,
         }
     }
@@ -168,6 +174,13 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn with_base_color(mut self, base_color: &'a wgpu::TextureView) -> Self {
         self.base_color = Some(base_color);
+        self
+    }
+
+    /// Adds what hides lights.
+    #[must_use]
+    pub fn with_occluders(mut self, occluders: Occluders<'a>) -> Self {
+        self.occluders = Some(occluders);
         self
     }
 

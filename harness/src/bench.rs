@@ -14,6 +14,7 @@ use crate::{
     messages::{say, say_error},
     out_folder::leave_all,
     results::Machine,
+    shadows::Casting,
     stage::Stage,
 };
 
@@ -55,7 +56,7 @@ impl Bench {
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 // The maps are those of other lights.
-                stage.cast_shadows(ShadowModel::None)?;
+                stage.cast_shadows(ShadowModel::None, Casting::default())?;
                 stage.set_up(&self.gpu, args)?;
                 self.stage.insert((key, stage))
             }

@@ -11,7 +11,7 @@ use crate::{
     error::HarnessError,
     painter::raster_spheres,
     results::{RefusedStrategy, ResultsError},
-    shadows::check_shadows,
+    shadows::{check_occlusion, check_shadows},
     stage::Stage,
     strategy::{Method, rows},
     truth_level::TruthLevel,
@@ -49,6 +49,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     }
     check_reach(args.specular_reach, args.cut)?;
     check_shadows(args.shadows, &args.stage, &args.layers, (args.path, args.msaa))?;
+    check_occlusion(args.shadows, choices)?;
     if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
         let accepted =
             "left out with --pictures differing and none, which keep no image of no culling";

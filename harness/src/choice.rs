@@ -121,6 +121,11 @@ impl Choice {
             || [options.reuse, options.keep].into_iter().flatten().any(|frames| frames > 1)
     }
 
+    /// Whether its lists leave out lights that shadow maps hide.
+    pub fn leaves_out_hidden(&self) -> bool {
+        self.id.options().leaves_out_hidden
+    }
+
     /// Whether it cuts the samples into groups, and so has something to assign.
     pub fn has_groups(&self) -> bool {
         self.row.has_groups

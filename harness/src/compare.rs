@@ -5,7 +5,7 @@ use std::path::Path;
 use assign::{Gpu, LightOrder};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use shading::{EDGE, LightBvh, ListCheck, Mode};
+use shading::{EDGE, LightBvh, ListCheck, Mode, traced::TracedScene};
 
 use crate::{
     against_image,
@@ -26,6 +26,7 @@ use crate::{
     report::listed,
     results::{RefusedStrategy, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
+    shadows::Casting,
     sight::untested,
     stage::Stage,
     strategy::{BASELINE, engines},
@@ -91,7 +92,9 @@ pub fn compare_on(
     stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.sample_pixels(args.msaa)?;
-    let fewer_maps = stage.cast_shadows(args.shadows)?;
+    let finds_occluders = choices.iter().any(Choice::leaves_out_hidden);
+    let fewer_maps =
+        stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders })?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
@@ -256,7 +259,11 @@ impl Run<'_> {
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = lights_by_slot(&self.gpu, &self.stage.lights)?;
         let bvh = (self.args.truth == TruthLevel::Full).then(|| LightBvh::new(&lights));
-        let mut check = bvh.as_ref().map(ListCheck::new);
+        // Rays tell what hidden lights lists leave out by mistake.
+        let traces = bvh.is_some() && choices.iter().any(Choice::leaves_out_hidden);
+        let scene = traces.then(|| self.stage.scene.clone());
+        let traced = scene.as_ref().map(TracedScene::new);
+        let mut check = bvh.as_ref().map(|bvh| ListCheck::new(bvh).in_scene(traced.as_ref()));
         let modes = self.args.mode.modes();
         let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);

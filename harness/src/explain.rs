@@ -25,7 +25,7 @@ use crate::{
     cli::{CliError, ExplainArgs, LayerArgs},
     compare::DEFAULT_PATH_FRAMES,
     error::HarnessError,
-    shadows::check_shadows,
+    shadows::{Casting, check_shadows},
     stage::Stage,
     strategy::{BASELINE, Method},
 };
@@ -74,6 +74,10 @@ pub fn explain(args: &ExplainArgs) -> Result<String, HarnessError> {
 pub fn explain_on(bench: &mut Bench, args: &ExplainArgs) -> Result<Explanation, HarnessError> {
     check(args)?;
     let choices = args.choices()?;
+    if let Some(choice) = choices.iter().find(|choice| choice.leaves_out_hidden()) {
+        let accepted = "without /occ: explain shows each light that a list misses, and lists with /occ leave out hidden ones";
+        return Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted).into());
+    }
     let gpu = bench.gpu().clone();
     check_frame(args, path_frames(&gpu, args))?;
     let stage = set_stage(bench, args)?;
@@ -102,7 +106,7 @@ pub fn set_stage<'a>(
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
-    stage.cast_shadows(args.shadows)?;
+    stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders: false })?;
     if args.path {
         stage.follow_path(frames);
     }

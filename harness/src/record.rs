@@ -13,8 +13,8 @@ use crate::{
     measure::{ListsFigures, Plan, Shown, Timed},
     moving::Moving,
     results::{
-        Clock, Errors, ImageFigures, Images, LayerSetting, ListFigures, Operations, Record,
-        Setting, Times, WorstPixel, mean,
+        Clock, Errors, HiddenFigures, ImageFigures, Images, LayerSetting, ListFigures, Operations,
+        Record, Setting, Times, WorstPixel, mean,
     },
     schedule::rounds,
     stage::Stage,
@@ -214,6 +214,7 @@ pub fn record(
             listed_per_sample: truth.map(|t| t.listed_per_sample()),
             contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
             missed_pairs: truth.map(|t| t.missed),
+            hidden: lists.hidden.map(HiddenFigures::from),
             first_missed: lists.first_missed,
             checked_pairs: truth.map(|t| t.contributing),
             samples: truth.map_or(0, |t| t.samples),

@@ -49,7 +49,7 @@ pub(crate) use file::remove_temporaries;
 pub use file::{ResultsError, write_atomically};
 pub use image::{Errors, ImageFigures, Images};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
-pub use lists::ListFigures;
+pub use lists::{HiddenFigures, ListFigures};
 pub use machine::{DeviceType, Machine};
 pub use operations::{EvaluatedTerms, Operations};
 pub use passes::{PassKind, PassTimes, Passes, Spans};

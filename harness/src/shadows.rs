@@ -1,8 +1,9 @@
 //! The shadow maps of a stage.
 
-use shading::{ShadowFigures, ShadowModel};
+use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
+    choice::Choice,
     cli::{CliError, LayerArgs, StageArgs},
     clock::PassClock,
     error::HarnessError,
@@ -14,24 +15,41 @@ use crate::{
 /// How often a GPU draws all maps again, and tests them for bands, to time it.
 const REPEATS: u32 = 7;
 
+/// What shadow maps are cast for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Casting {
+    /// How light ends at the lights' ranges: what lies beyond hides nothing.
+    pub cut: Cut,
+    /// Whether strategies ask what hides lights from groups.
+    pub finds_occluders: bool,
+}
+
 impl Stage {
     /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. With an
-    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. Returns a
-    /// warning if area lights got fewer maps than asked for.
+    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. If asked
+    /// to, it also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got
+    /// fewer maps than asked for.
     ///
     /// # Errors
     ///
     /// [`CliError`] in a scene with suns, and the errors of
     /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
     /// [`Renderer::settle_shadows`](shading::Renderer::settle_shadows).
-    pub fn cast_shadows(&mut self, model: ShadowModel) -> Result<Option<String>, HarnessError> {
+    pub fn cast_shadows(
+        &mut self,
+        model: ShadowModel,
+        Casting { cut, finds_occluders }: Casting,
+    ) -> Result<Option<String>, HarnessError> {
+        let specular_reach = self.specular_reach;
+        let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
+        self.renderer.cast_shadows_within(lit.ranges_lit());
         self.shadows = ShadowModel::None;
         if model.is_on() && !self.suns.is_empty() {
             let accepted = "none in a scene with suns, which have no shadow maps";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
         (self.shadow_draw_ms, self.shadow_rounds) = (None, None);
-        let Some(figures) = self.draw_maps(model)? else { return Ok(None) };
+        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
         self.shadows = model;
         let [width, height] = figures.atlas_px;
         say(format!(
@@ -67,12 +85,19 @@ impl Stage {
 
     /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter a single
     /// one.
-    fn draw_maps(&mut self, model: ShadowModel) -> Result<Option<ShadowFigures>, HarnessError> {
+    fn draw_maps(
+        &mut self,
+        model: ShadowModel,
+        finds_occluders: bool,
+    ) -> Result<Option<ShadowFigures>, HarnessError> {
         if !model.is_on() {
             return Ok(self.renderer.cast_shadows(&self.lights, model)?);
         }
         let mut clock = PassClock::new(&self.gpu);
         self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        if finds_occluders {
+            self.renderer.find_occluders_in(OccluderDepth::Farthest, &mut clock)?;
+        }
         let ms = |clock: &mut PassClock| -> Result<f64, HarnessError> {
             Ok(clock.finish()?.iter().map(|(_, ms)| ms).sum())
         };
@@ -127,10 +152,21 @@ impl Stage {
             maps: figures.maps,
             faces: figures.faces,
             atlas_px: figures.atlas_px,
+            occluder_bytes: Some(figures.occluder_bytes).filter(|bytes| *bytes > 0),
             draw_ms: self.shadow_draw_ms,
             adaptive: self.adaptive_setting(),
         })
     }
+}
+
+/// Refuses strategies that leave out hidden lights where no maps say which these are.
+pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<(), CliError> {
+    let has_maps = matches!(model, ShadowModel::Maps { .. });
+    let hides = choices.iter().find(|choice| choice.leaves_out_hidden() && !has_maps);
+    hides.map_or(Ok(()), |choice| {
+        let accepted = "combined with --shadows maps:N,PX: only maps that stay say what hides lights from a group";
+        Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted))
+    })
 }
 
 /// Refuses shadows of lights without maps, and on what maps do not shade. Adaptive maps follow one view (`is_path`:

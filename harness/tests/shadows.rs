@@ -68,6 +68,7 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         maps: 27,
         faces: 27 * 5,
         atlas_px: [9 * 128, 9 * 128],
+        occluder_bytes: None,
         draw_ms: None,
         adaptive: None,
     };
@@ -109,4 +110,68 @@ fn adaptive_maps_settle_before_methods_are_compared() {
     assert_eq!(found.maps_of_rectangles.iter().sum::<u32>(), first.maps);
     assert_eq!(first.faces, 5 * first.maps);
     assert!(found.frames > 0 && found.banding_ms > Some(0.0) && first.draw_ms > Some(0.0));
+}
+
+/// Strategies of all families that have the segment show the image of no culling with lists that are shorter, in the atrium
+/// with lights of all kinds.
+#[test]
+fn lists_without_hidden_lights_are_shorter_and_images_stay() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let sizes = [
+        "T-I/16x16",
+        "T-E/16x16",
+        "ModifiedHalfZ/16x16",
+        "T-25D/16x16",
+        "T-E1/16x16",
+        "DC-I/12x12x24",
+    ];
+    let more = ["SC-E/12x12x24/n6/bvh", "DA-E/12x12x24/mask", "G/16x16x16", "HC/16", "M/1"];
+    let plain: Vec<&str> = sizes.into_iter().chain(more).collect();
+    let ids: Vec<String> =
+        plain.iter().flat_map(|id| [(*id).to_owned(), format!("{id}/occ")]).collect();
+    let options =
+        ["compare", "--size", "96x54", "--lights", "60", "--spots", "0.2", "--areas", "0.2"];
+    let shown =
+        ["--radius-scale", "2", "--frames", "1", "--warmup", "0", "--truth", "full", "--out", out];
+    let ids = ids.join(",");
+    run(&[&options[..], &shown, &["--shadows", "maps:4,64", "--strategies", &ids]].concat());
+    let results = Results::read(&folder.path().join("results.json")).expect("results");
+    assert_eq!(results.records.len(), 2 * plain.len());
+    for pair in results.records.chunks(2) {
+        let [all, fewer] = [&pair[0], &pair[1]];
+        assert!(fewer.setting.shadows.as_ref().is_some_and(|s| s.occluder_bytes > Some(0)));
+        for record in pair {
+            let id = &record.strategy;
+            assert_eq!(record.image.differing_channels, Some(0), "{id}");
+            assert_eq!(record.lists.missed_pairs, Some(0), "{id}");
+        }
+        let hidden = fewer.lists.hidden.expect("hidden pairs");
+        println!(
+            "{}: {} entries, {} with /occ, {hidden:?}",
+            all.strategy, all.lists.entries, fewer.lists.entries
+        );
+        assert_eq!(all.lists.hidden, None, "{}", all.strategy);
+        assert!(fewer.lists.entries < all.lists.entries, "{}", fewer.strategy);
+        assert!(hidden.removed_pairs > 0, "{}", fewer.strategy);
+    }
+}
+
+#[test]
+fn lists_without_hidden_lights_need_maps() {
+    let output = |arguments: &[&str]| {
+        let program = Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output();
+        String::from_utf8_lossy(&program.expect("starts").stderr).into_owned()
+    };
+    let error = output(&["compare", "--strategies", "SC-E/48x48x40/occ"]);
+    let expected =
+        "--strategies is SC-E/48x48x40/occ: it must be combined with --shadows maps:N,PX";
+    assert!(error.contains(expected), "{error}");
+    let error =
+        output(&["explain", "--pixel", "1,1", "--strategies", "T-E/occ", "--shadows", "maps:1,64"]);
+    assert!(error.contains("without /occ: explain shows"), "{error}");
+    let error = output(&["compare", "--strategies", "SC-E/occ/keep4", "--shadows", "maps:1,64"]);
+    assert!(error.contains("\"occ\" and \"keep4\" contradict each other"), "{error}");
+    let error = output(&["compare", "--strategies", "W/occ", "--shadows", "maps:1,64"]);
+    assert!(error.contains("\"occ\" is unknown: W takes"), "{error}");
 }

@@ -72,6 +72,7 @@ fn image(maps: u32, px: u32, taps: u32, flip: f64) -> Results {
         maps: 4 * maps,
         faces: 20 * maps,
         atlas_px: [8192, 8192],
+        occluder_bytes: None,
         draw_ms: Some(3.25),
         adaptive: None,
     });

@@ -12,13 +12,24 @@ const RECORDS_BINDING: u32 = 27;
 #[derive(Clone, Debug)]
 pub(crate) struct BoundMaps {
     model: ShadowModel,
+    ranges: f32,
     atlas: wgpu::TextureView,
     records: wgpu::Buffer,
 }
 
 impl BoundMaps {
-    pub(crate) fn new(model: ShadowModel, atlas: wgpu::TextureView, records: wgpu::Buffer) -> Self {
-        Self { model, atlas, records }
+    pub(crate) fn new(
+        model: ShadowModel,
+        ranges: f32,
+        atlas: wgpu::TextureView,
+        records: wgpu::Buffer,
+    ) -> Self {
+        Self { model, ranges, atlas, records }
+    }
+
+    /// How far from their lights samples may lie that the maps serve, in ranges of the lights.
+    pub(crate) fn ranges(&self) -> f32 {
+        self.ranges
     }
 
     /// The model of the maps.

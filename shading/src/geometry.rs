@@ -3,13 +3,15 @@
 use assign::{AssignError, Gpu, entry, storage_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::{Mat3, Vec3};
-use scenes::{Instance, Model, Scene, Vertex};
+use scenes::{Instance, Model, Scene};
 use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
     lighting_inputs::{Bound, LightingInputs},
     materials::{MaterialKey, Materials},
+    mesh_buffers::{MeshRange, colors, concatenate},
+    pieces::Piece,
 };
 
 /// `scene.wesl`, `struct Instance`. 112 bytes.
@@ -69,6 +71,8 @@ pub struct SceneGpu {
     /// Colours of all vertices, if any mesh has colours.
     colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
+    /// Parts of all draws, in their order.
+    pub(crate) pieces: Vec<Piece>,
     /// Its transparent surfaces.
     pub(crate) sheets: Vec<Sheet>,
     pub(crate) materials: Materials,
@@ -82,7 +86,7 @@ impl SceneGpu {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, ShadingError> {
         let materials = Materials::new(gpu, scene)?;
         let (ranges, vertex_bytes, index_bytes) = concatenate(scene);
-        let (records, draws, sheets) = plan(scene, &materials, &ranges);
+        let Planned { records, draws, pieces, sheets } = plan(scene, &materials, &ranges);
         let buffer = |label: &str, bytes: &[u8], usage| {
             check_size(gpu, label, bytes.len() as u64, usage)?;
             let descriptor =
@@ -110,7 +114,7 @@ impl SceneGpu {
             })
         };
         let layouts = Bound::ALL.map(layout);
-        Ok(Self { vertices, indices, colors, draws, sheets, materials, layouts, instances })
+        Ok(Self { vertices, indices, colors, draws, pieces, sheets, materials, layouts, instances })
     }
 
     /// Layout of bind group 2.
@@ -186,9 +190,21 @@ impl SceneGpu {
         only_opaque: bool,
         pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
     ) {
+        let draws = self.draws.iter().filter(|draw| !(only_opaque && draw.is_transparent));
+        self.draw_each(pass, textures, draws.copied(), pipeline);
+    }
+
+    /// Issues draws in their order.
+    pub(crate) fn draw_each<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        textures: bool,
+        draws: impl IntoIterator<Item = Draw>,
+        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
+    ) {
         self.bind_vertices(pass);
         let mut bound = (None, None);
-        for draw in self.draws.iter().filter(|draw| !(only_opaque && draw.is_transparent)) {
+        for draw in draws {
             let Some(pipeline) = pipeline(draw.key) else {
                 continue;
             };
@@ -241,55 +257,17 @@ fn check_size(
     Ok(())
 }
 
-/// The place of a mesh in the shared buffers.
-#[derive(Clone, Copy)]
-struct MeshRange {
-    first_index: u32,
-    index_count: u32,
-    base_vertex: i32,
+/// Instances sorted by pipeline, material and mesh; one draw for each run of one mesh; the parts of draws; and the
+/// transparent surfaces.
+#[derive(Default)]
+struct Planned {
+    records: Vec<InstanceRecord>,
+    draws: Vec<Draw>,
+    pieces: Vec<Piece>,
+    sheets: Vec<Sheet>,
 }
 
-/// Concatenates all meshes: their ranges, vertex bytes and index bytes.
-fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
-    let mut vertices: Vec<u8> = Vec::new();
-    let mut indices: Vec<u8> = Vec::new();
-    let ranges = scene
-        .meshes
-        .iter()
-        .map(|mesh| {
-            let range = MeshRange {
-                first_index: (indices.len() / 4) as u32,
-                index_count: mesh.indices.len() as u32,
-                base_vertex: (vertices.len() / size_of::<Vertex>()) as i32,
-            };
-            vertices.extend_from_slice(cast_slice(&mesh.vertices));
-            indices.extend_from_slice(cast_slice(&mesh.indices));
-            range
-        })
-        .collect();
-    (ranges, vertices, indices)
-}
-
-/// Concatenates the vertex colours of all meshes, white where a mesh has none. Empty if no mesh has
-/// colours.
-fn colors(scene: &Scene) -> Vec<[f32; 4]> {
-    if scene.meshes.iter().all(|mesh| mesh.colors.is_empty()) {
-        return Vec::new();
-    }
-    let of_mesh = |mesh: &scenes::Mesh| {
-        let mut colors = mesh.colors.clone();
-        colors.resize(mesh.vertices.len(), [1.0; 4]);
-        colors
-    };
-    scene.meshes.iter().flat_map(of_mesh).collect()
-}
-
-/// Instances sorted by pipeline, material and mesh; one draw for each run of one mesh; and the transparent surfaces.
-fn plan(
-    scene: &Scene,
-    materials: &Materials,
-    ranges: &[MeshRange],
-) -> (Vec<InstanceRecord>, Vec<Draw>, Vec<Sheet>) {
+fn plan(scene: &Scene, materials: &Materials, ranges: &[MeshRange]) -> Planned {
     let mut order: Vec<(DrawKey, u32, &Instance)> = scene
         .instances
         .iter()
@@ -311,7 +289,7 @@ fn plan(
             record(&scene.models[instance.model as usize], instance.model, *material)
         })
         .collect();
-    let (mut draws, mut sheets) = (Vec::new(), Vec::new());
+    let Planned { mut draws, mut pieces, mut sheets, .. } = Planned::default();
     let mut first = 0;
     for run in order.chunk_by(|a, b| a.0 == b.0 && a.1 == b.1 && a.2.mesh == b.2.mesh) {
         let (key, material, instance) = run[0];
@@ -326,6 +304,18 @@ fn plan(
             instance_count: run.len() as u32,
             is_transparent: scene.materials[material as usize].is_transparent(),
         };
+        for (first_instance, (.., instance)) in (first..).zip(run) {
+            let placed = scene.models[instance.model as usize].object_to_world;
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let draw_ix = draws.len() as u32;
+            pieces.extend(Piece::of_instance(
+                draw_ix,
+                mesh,
+                range.first_index,
+                first_instance,
+                placed,
+            ));
+        }
         draws.push(draw);
         if draw.is_transparent {
             let bounds = scene.meshes[instance.mesh as usize].bounds;
@@ -339,7 +329,7 @@ fn plan(
         }
         first += run.len() as u32;
     }
-    (records, draws, sheets)
+    Planned { records, draws, pieces, sheets }
 }
 
 pub(crate) fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {

@@ -6,6 +6,7 @@
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
 //! | `shadow-maps` | once, with a [`ShadowModel`]; where frames subdivide lights, again for new points | triangles | depth from the lights |
+//! | `occluders` | once, where a strategy leaves out hidden lights | depth from the lights | their farthest depths, by blocks of texels |
 //! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
@@ -41,10 +42,12 @@ mod list_check;
 mod loop_rounds;
 pub mod ltc;
 mod materials;
+mod mesh_buffers;
 mod mips;
 mod mode;
 mod moving_lights;
 mod operations;
+mod pieces;
 mod pixel_group;
 mod pixel_pass;
 mod probe;
@@ -79,7 +82,7 @@ pub use layers::{
 pub use lighting::Lighting;
 pub use lighting_inputs::{LightingRecord, SunRecord, SunsRecord};
 pub use lighting_options::{Cut, LightingOptions};
-pub use list_check::{ListCheck, ListsTruth, MissedPair};
+pub use list_check::{HiddenPairs, ListCheck, ListsTruth, MissedPair};
 pub use materials::MaterialRecord;
 pub use mode::Mode;
 pub use moving_lights::MovingLights;
@@ -94,7 +97,7 @@ pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
     MOST_ADAPTIVE, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::{ShadowFigures, ShadowRefinement};
+pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

@@ -209,6 +209,12 @@ fn bound_maps(
         Some(maps) if maps.model() != options.shadows => {
             refuse(format!("{}, the model of the renderer's maps, or none", maps.model()))
         }
+        Some(maps) if maps.ranges() < options.ranges_lit() => refuse(format!(
+            "none where lights reach {} of their ranges: the maps hold what hides samples within {}. Call \
+             Renderer::cast_shadows_within with as many before Renderer::cast_shadows",
+            options.ranges_lit(),
+            maps.ranges()
+        )),
         Some(maps) => Ok(Some(maps.clone())),
     }
 }

@@ -75,6 +75,14 @@ impl LightingOptions {
     /// The [`exit_weight`](Self::exit_weight) with which every light of a list is evaluated.
     pub const EVALUATE_ALL: f32 = -1.0;
 
+    /// How far from a light a sample may lie to which it adds something, in ranges of the light.
+    pub fn ranges_lit(&self) -> f32 {
+        match self.cut {
+            Cut::Never => f32::INFINITY,
+            Cut::Windowed | Cut::Hard => self.specular_reach.unwrap_or(1.0).max(1.0),
+        }
+    }
+
     /// Sets the shader flags that these options need.
     pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
         let shader = shader

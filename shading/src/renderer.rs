@@ -38,6 +38,8 @@ pub struct Renderer {
     pub(crate) layers: Option<LayerScene>,
     /// Maps of the lights' shadows.
     pub(crate) shadows: Option<ShadowMaps>,
+    /// How far from their lights samples may lie that shadow maps serve, in ranges of the lights.
+    pub(crate) shadow_ranges: f32,
     /// The pass that makes the image of several samples per pixel.
     pub(crate) resolve: Option<Resolve>,
 }
@@ -71,6 +73,7 @@ impl Renderer {
             targets,
             layers: None,
             shadows: None,
+            shadow_ranges: f32::INFINITY,
             resolve: None,
         })
     }
@@ -102,6 +105,7 @@ impl Renderer {
             shared,
             layers: None,
             shadows: None,
+            shadow_ranges: f32::INFINITY,
             resolve: None,
         })
     }
@@ -182,7 +186,10 @@ impl Renderer {
             (false, false, 1) => SampleDomain::OpaqueSurfaces,
             (false, false, _) => SampleDomain::NearSurfaces,
         };
-        Frame::new(view, lights)
+        let frame = Frame::new(view, lights);
+        let occluders = self.shadows.as_ref().and_then(ShadowMaps::occluders);
+        let frame = occluders.map_or(frame, |occluders| frame.with_occluders(occluders));
+        frame
             .sampled_at(samples)
             .with_seed(self.seed)
             .with_depth(&self.targets.depth)

@@ -2,8 +2,8 @@
 
 use assign::{Assignment, Counters, EncoderPasses, Gpu};
 use shading::{
-    LayerSamples, LightingOptions, ListCheck, ListsTruth, Mode, Operations, count_operations,
-    record_for_probe, visit_layer_lists, visit_lists,
+    HiddenPairs, LayerSamples, LightingOptions, ListCheck, ListsTruth, Mode, Operations,
+    count_operations, record_for_probe, traced::GBufferSamples, visit_layer_lists, visit_lists,
 };
 
 use crate::{
@@ -25,6 +25,8 @@ pub struct ListsFigures {
     pub memory_bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
+    /// Pairs that lists leave out because surfaces hide the light; `None` for strategies that leave out none.
+    pub hidden: Option<HiddenPairs>,
     /// The first missed pair of the truth.
     pub first_missed: Option<MissedPair>,
     /// Of the samples of the truth, those of layers.
@@ -81,12 +83,17 @@ pub(super) fn count(
         }
     };
     let mut layer_samples = 0;
+    let mut hidden = None;
     let truth = match truth {
         None => None,
         Some(check) => {
             let pixels = view.viewport.width as usize * view.viewport.height as usize;
             let mut found = ListsTruth::default();
             let is_forward = mode.is_forward();
+            let leaves_out_hidden = strategy.needs().occluders;
+            check.ignore_hidden(leaves_out_hidden);
+            let surfaces =
+                leaves_out_hidden.then(|| GBufferSamples::read(renderer, view)).transpose()?;
             visit_lists(
                 renderer,
                 strategy,
@@ -95,6 +102,12 @@ pub(super) fn count(
                 is_forward,
                 &mut |samples, lists| {
                     lengths.add(samples, lists, pixels);
+                    let pairs = surfaces
+                        .as_ref()
+                        .and_then(|at| check.hidden(samples, lists, at, strategy.needs().normals));
+                    if let Some(pairs) = pairs {
+                        *hidden.get_or_insert_default() += pairs;
+                    }
                     found = found.plus(check.check(samples, lists, strategy.needs().normals));
                 },
             )?;
@@ -128,6 +141,7 @@ pub(super) fn count(
         memory_bytes: memory_bytes(stage, strategy, mode),
         first_missed: truth.and_then(|truth| truth.first_missed).map(|pair| place(stage, pair)),
         truth,
+        hidden,
         layer_samples,
         lengths,
         operations,

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use shading::HiddenPairs;
+
 use super::{MissedPair, Operations, Untested};
 
 /// The lists of a record, and their missed lights.
@@ -49,6 +51,10 @@ pub struct ListFigures {
     /// wrong.
     #[serde(default)]
     pub missed_pairs: Option<u64>,
+    /// Pairs that lists leave out because shadow maps hide the light; absent for methods without `/occ`, and if lists were
+    /// not checked. They are no missed pairs: the maps decide what the image shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden: Option<HiddenFigures>,
     /// The first missed pair, by pixel and then by light; absent if none is missed, and in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_missed: Option<MissedPair>,
@@ -62,4 +68,22 @@ pub struct ListFigures {
     /// Light operations, if they were counted.
     #[serde(default)]
     pub operations: Option<Operations>,
+}
+
+/// (light, sample) pairs within range that lists leave out because shadow maps hide the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HiddenFigures {
+    /// All of them.
+    pub removed_pairs: u64,
+    /// Of these, pairs of lights without an area to which an exact ray is free and that add something. The image of no
+    /// culling has their shadow too.
+    pub seen_pairs: u64,
+    /// Of these, pairs of area lights of which exact rays see a part that adds something.
+    pub seen_area_pairs: u64,
+}
+
+impl From<HiddenPairs> for HiddenFigures {
+    fn from(HiddenPairs { removed, seen, seen_areas }: HiddenPairs) -> Self {
+        Self { removed_pairs: removed, seen_pairs: seen, seen_area_pairs: seen_areas }
+    }
 }

@@ -140,8 +140,11 @@ pub struct ShadowSetting {
     pub faces: u32,
     /// Width and height of the atlas, texels of 4 bytes.
     pub atlas_px: [u32; 2],
-    /// The time that drawing all maps once takes, ms: on a GPU the median of seven draws. It is in no other time. Absent
-    /// in older results.
+    /// Bytes of the depths by which strategies with `/occ` find hidden lights; absent without such strategies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub occluder_bytes: Option<u64>,
+    /// The time that drawing all maps once takes, ms: on a GPU the median of seven draws. It is in no other time. With
+    /// `/occ`, it includes the pass `occluders`. Absent in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draw_ms: Option<f64>,
     /// With an adaptive model: how frames subdivided the lights. Absent otherwise, and in older results.

@@ -223,6 +223,8 @@ fn segment_of(rng: &mut impl Rng, axis: Axis) -> Option<&'static str> {
         Axis::Specular | Axis::Fewer | Axis::Stochastic | Axis::Reuse | Axis::Cap => return None,
         // It loses no light, and shows what it gains only where specular terms reach beyond ranges.
         Axis::Reach => return None,
+        // It needs shadow maps, which these frames have none of.
+        Axis::Occlusion => return None,
         // These fail on purpose.
         Axis::Rectangle | Axis::Half | Axis::PlainDepth | Axis::Order => return None,
     };

@@ -8,8 +8,8 @@ use assign_grid::GridBox;
 use serde_json::Value;
 
 use super::segments::{
-    CAP, CASCADES, EVEN, HALF, KEEP, NEAR, NO_EXIT, NORMALS, PLAIN_DEPTH, RASTER, REACH, RECTANGLE,
-    REUSE, STOCHASTIC, TOUCHED, UNORDERED,
+    CAP, CASCADES, EVEN, HALF, KEEP, NEAR, NO_EXIT, NORMALS, OCCLUSION, PLAIN_DEPTH, RASTER, REACH,
+    RECTANGLE, REUSE, STOCHASTIC, TOUCHED, UNORDERED,
 };
 use super::{Options, specular};
 
@@ -38,6 +38,8 @@ pub enum Axis {
     /// subgroups read together; `prune`, a list that subgroups prune while they read it; `tree`, a list with a tree of
     /// the depths that its lights reach.
     Storage,
+    /// Whether lists leave out lights that shadow maps hide from all samples of a group: `occ`.
+    Occlusion,
     /// Whether lights must also touch a rectangle on the screen that is too small: `rect`. A flaw.
     Rectangle,
     /// Whether lists are made for positions and ranges in half precision: `half`. A flaw.
@@ -64,7 +66,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Slices,
         Self::Scatter,
         Self::Box,
@@ -75,6 +77,7 @@ impl Axis {
         Self::Source,
         Self::AreaBounds,
         Self::Storage,
+        Self::Occlusion,
         Self::Rectangle,
         Self::Half,
         Self::PlainDepth,
@@ -106,6 +109,7 @@ impl Axis {
             Self::Source => "source",
             Self::AreaBounds => "area-bounds",
             Self::Storage => "storage",
+            Self::Occlusion => "occlusion",
             Self::Rectangle => RECTANGLE,
             Self::Half => HALF,
             Self::PlainDepth => PLAIN_DEPTH,
@@ -134,6 +138,9 @@ impl Axis {
                 "mask, which keeps a bit per light in place of a list, scalar, which lets the lanes of a subgroup \
                  read masks together, prune, which lets them leave out lights of the list that miss their samples, \
                  or tree, which leaves out lights of the list that lie before or behind a sample"
+            }
+            Self::Occlusion => {
+                "occ, which leaves out lights that shadow maps hide from all of a group; with --shadows maps"
             }
             Self::Scatter => "raster, which lets the rasteriser find the tiles of each light",
             Self::Box => "positions, supports, surfaces, frustum or visible",
@@ -191,6 +198,7 @@ impl Axis {
             UNORDERED => Some(Self::Order),
             EVEN => Some(Self::Slices),
             RASTER => Some(Self::Scatter),
+            OCCLUSION => Some(Self::Occlusion),
             _ if fewer_of(segment).is_some() => Some(Self::Fewer),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
             _ if segment.starts_with(CASCADES) => Some(Self::Slices),
@@ -254,6 +262,7 @@ impl Axis {
             Self::Scatter => options.scatter = Scatter::Raster,
             Self::Storage => options.storage = storage_of(segment)?,
             Self::Touched => options.is_touched = true,
+            Self::Occlusion => options.leaves_out_hidden = true,
             Self::Exit => options.evaluates_all = true,
             Self::Rectangle => options.is_rectangle = true,
             Self::Half => options.is_half = true,
@@ -293,6 +302,7 @@ impl Axis {
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
             Self::Scatter => options.scatter.segment().strip_prefix('/').map(str::to_owned),
             Self::Storage => options.storage.name().map(str::to_owned),
+            Self::Occlusion => options.leaves_out_hidden.then(|| OCCLUSION.to_owned()),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
             Self::Rectangle => options.is_rectangle.then(|| RECTANGLE.to_owned()),
@@ -343,14 +353,18 @@ impl Axis {
             Self::Storage => ("storage", options.storage.name()?.into()),
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
+            Self::Occlusion if options.leaves_out_hidden => ("occlusion", true.into()),
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
             Self::Rectangle if options.is_rectangle => ("screen_rectangle", true.into()),
             Self::Half if options.is_half => ("half_precision", true.into()),
             Self::PlainDepth if options.is_plain_depth => ("plain_depth", true.into()),
             Self::Order if options.is_unordered => ("random_order", true.into()),
-            Self::Exit | Self::Rectangle | Self::Half | Self::PlainDepth | Self::Order => {
-                return None;
-            }
+            Self::Exit
+            | Self::Occlusion
+            | Self::Rectangle
+            | Self::Half
+            | Self::PlainDepth
+            | Self::Order => return None,
         })
     }
 }

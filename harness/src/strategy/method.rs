@@ -6,6 +6,7 @@ use assign::{
 };
 use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
+use shading::OCCLUSION_TEST;
 
 /// How a strategy lights its pixels.
 pub enum Method {
@@ -77,6 +78,8 @@ pub struct Options {
     pub keep: Option<u32>,
     /// Whether only those lists are made again that a changed light touches.
     pub is_touched: bool,
+    /// Whether lists leave out lights that shadow maps hide.
+    pub leaves_out_hidden: bool,
     /// Whether shading evaluates every listed light.
     pub evaluates_all: bool,
     /// Whether lights must also touch a rectangle on the screen that is too small.
@@ -98,6 +101,7 @@ impl Options {
             area_bounds: self.area_bounds,
             storage: self.storage,
             screen_rectangle: self.is_rectangle,
+            occlusion: self.leaves_out_hidden.then_some(OCCLUSION_TEST),
         }
     }
 }

@@ -150,6 +150,13 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             return Err(contradiction(id, "touched", &segment, reason));
         }
     }
+    if let Some(hidden) = Axis::Occlusion.segment(options) {
+        let others = [Axis::Keep, Axis::Touched, Axis::Reuse];
+        if let Some(other) = others.into_iter().find_map(|axis| axis.segment(options)) {
+            let reason = "shadow maps hold for one frame's lights, and lists that hide lights for its groups";
+            return Err(contradiction(id, &hidden, &other, reason));
+        }
+    }
     check_storage(id, options)?;
     let settings = options.settings();
     let is_ball = settings.area_bounds == AreaBounds::Ball;

@@ -132,6 +132,7 @@ pub(super) const NEEDS_NOTHING: Needs = Needs {
     models: false,
     triangles: false,
     hierarchy: false,
+    occluders: false,
 };
 
 /// Reads the depth of the surfaces.

@@ -20,6 +20,8 @@ pub(super) const REUSE: &str = "reuse";
 pub(super) const KEEP: &str = "keep";
 /// The segment that makes only those lists again that a changed light touches.
 pub(super) const TOUCHED: &str = "touched";
+/// The segment that leaves lights out of lists which shadow maps hide.
+pub(super) const OCCLUSION: &str = "occ";
 /// The segment that lets the rasteriser add lights to cells.
 pub(super) const RASTER: &str = "raster";
 /// The segment that turns the early exit off.

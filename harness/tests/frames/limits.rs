@@ -80,6 +80,7 @@ const DEFAULT: CullSettings = CullSettings {
     area_bounds: assign::AreaBounds::Outline,
     storage: assign::Storage::Lists,
     screen_rectangle: false,
+    occlusion: None,
 };
 
 fn clusters(bounds: Bounds, occupancy: Occupancy, settings: CullSettings) -> ClusterOptions {

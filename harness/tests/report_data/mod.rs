@@ -120,6 +120,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             longest: if is_none { 1_000 } else { 96 },
             listed_per_sample: Some(if is_none { 1_000.0 } else { 26.37 }),
             contributing_per_sample: Some(14.218),
+            hidden: None,
             missed_pairs: Some(0),
             first_missed: None,
             checked_pairs: Some(3_275_827),

@@ -11,6 +11,7 @@
 //! Every light that reaches a sample is in the union of its block, so no pair goes untested. A list that holds the whole
 //! union needs one look-up for each light, where testing pairs would need one for each light and sample.
 
+mod hidden;
 mod reached;
 #[cfg(test)]
 mod tests;
@@ -21,7 +22,13 @@ use assign::{ENTRY_LIGHT, ListsSnapshot};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{LightBvh, Samples, truth::is_missed};
+use crate::{
+    LightBvh, Samples,
+    traced::{GBufferSamples, TracedScene},
+    truth::is_missed,
+};
+pub use hidden::HiddenPairs;
+use hidden::hidden_pairs;
 use reached::{BLOCK, Marks, NO_POSITION, Reached};
 
 /// Runs that a thread checks at a time.
@@ -102,12 +109,41 @@ impl LightBvh<'_> {
 pub struct ListCheck<'a> {
     bvh: &'a LightBvh<'a>,
     known: Vec<Reached>,
+    scene: Option<&'a TracedScene<'a>>,
+    /// Whether lists may lack lights that surfaces hide.
+    ignores_hidden: bool,
 }
 
 impl<'a> ListCheck<'a> {
     /// A check of lists of the lights of `bvh`.
     pub fn new(bvh: &'a LightBvh<'a>) -> Self {
-        Self { bvh, known: Vec::new() }
+        Self { bvh, known: Vec::new(), scene: None, ignores_hidden: false }
+    }
+
+    /// Sets the scene in which [`hidden`](Self::hidden) traces rays.
+    #[must_use]
+    pub fn in_scene(self, scene: Option<&'a TracedScene<'a>>) -> Self {
+        Self { scene, ..self }
+    }
+
+    /// Sets whether lists may lack lights that surfaces hide ([`Needs::occluders`](assign::Needs)). Lights that a list
+    /// lacks are then no missed pairs, because only look-ups of shadow maps know which of them are hidden. Lights that it
+    /// lists without a term that reaches still are.
+    pub fn ignore_hidden(&mut self, is_ignored: bool) {
+        self.ignores_hidden = is_ignored;
+    }
+
+    /// The pairs that lists leave out, and those of them that exact rays see. `surfaces` are those of the frame's pixels.
+    /// `knows_normals` is that of [`check`](Self::check).
+    /// `None` without a scene.
+    pub fn hidden(
+        &self,
+        samples: &Samples,
+        lists: &ListsSnapshot,
+        surfaces: &GBufferSamples,
+        knows_normals: bool,
+    ) -> Option<HiddenPairs> {
+        Some(hidden_pairs(self.bvh, samples, lists, surfaces, self.scene?, knows_normals))
     }
 
     /// Checks a frame's lists against every sample. `knows_normals` says whether the strategy may leave out lights
@@ -119,7 +155,7 @@ impl<'a> ListCheck<'a> {
         lists: &ListsSnapshot,
         knows_normals: bool,
     ) -> ListsTruth {
-        let bvh = self.bvh;
+        let (bvh, ignores_hidden) = (self.bvh, self.ignores_hidden);
         let (known, places) = self.reached(samples);
         let key = |sample: u32| {
             let ix = sample as usize;
@@ -139,7 +175,8 @@ impl<'a> ListCheck<'a> {
             })
             .collect();
         runs.par_sort_unstable_by_key(|run| samples.groups[order[run.start] as usize]);
-        let check = Check { bvh, known, places: &places, samples, lists, knows_normals };
+        let check =
+            Check { bvh, known, places: &places, samples, lists, knows_normals, ignores_hidden };
         runs.par_chunks(RUNS_AT_ONCE)
             .map_init(
                 || Marks::new(bvh.lights().len()),
@@ -172,6 +209,7 @@ struct Check<'a> {
     samples: &'a Samples,
     lists: &'a ListsSnapshot,
     knows_normals: bool,
+    ignores_hidden: bool,
 }
 
 impl Check<'_> {
@@ -207,7 +245,7 @@ impl Check<'_> {
         for needed in &self.known.unions[place(run[0]) / BLOCK] {
             let light = needed & ENTRY_LIGHT;
             let terms = listed.terms(light);
-            if needed & !ENTRY_LIGHT & !terms == 0 {
+            if needed & !ENTRY_LIGHT & !terms == 0 || (self.ignores_hidden && terms == 0) {
                 continue;
             }
             for &sample in run {

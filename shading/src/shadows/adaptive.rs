@@ -8,7 +8,7 @@ use super::{
     clear_face::clear_face,
     plan::Plan,
     quadtree::{INNER, Node},
-    rectangle::{Patch, Rectangle},
+    rectangle::{MovedFace, Patch, Rectangle},
     start_level::start_level,
 };
 use crate::{ShadingError, ShadowModel, bound_maps::BoundMaps};
@@ -81,11 +81,9 @@ impl Adaptive {
         }
         let mut patch = Patch::default();
         rectangles.iter_mut().for_each(|rectangle| rectangle.place_points(&mut patch));
+        patch.move_faces(&mut plan.faces);
         for (first, vectors) in patch.records {
             plan.records[first..first + vectors.len()].copy_from_slice(&vectors);
-        }
-        for (face, world_to_view) in patch.faces {
-            plan.faces[face].world_to_view = world_to_view;
         }
         Ok(Some(Self {
             banding: Banding::new(gpu, frame, each * rectangles.len() as u32)?,
@@ -173,7 +171,7 @@ impl Adaptive {
         for (first, vectors) in &patch.records {
             self.writes.write(records, *first as u64 * VECTOR_BYTES, cast_slice(vectors))?;
         }
-        for (face, world_to_view) in &patch.faces {
+        for MovedFace { face, world_to_view, .. } in &patch.faces {
             // The first field of `ViewUniform`.
             let offset = *face as u64 * u64::from(stride);
             self.writes.write(views, offset, bytes_of(&world_to_view.to_cols_array()))?;

@@ -1,8 +1,8 @@
 //! A renderer with shadow maps.
 
-use assign::{EncoderPasses, LightBuffer, Passes};
+use assign::{AssignError, EncoderPasses, LightBuffer, Passes};
 
-use super::{ShadowFigures, ShadowMaps};
+use super::{OccluderDepth, ShadowFigures, ShadowMaps};
 use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
 
 impl Renderer {
@@ -30,6 +30,13 @@ impl Renderer {
         Ok(figures)
     }
 
+    /// Has maps that are cast afterwards leave out what lies beyond so many ranges of its light: it hides no sample within
+    /// them. 1 serves lights that end at their range, and [`LightingOptions::ranges_lit`](crate::LightingOptions::ranges_lit)
+    /// says what other options need. Without this call, maps hold all that a face sees. Images are the same.
+    pub fn cast_shadows_within(&mut self, ranges: f32) {
+        self.shadow_ranges = ranges;
+    }
+
     /// [`cast_shadows`](Self::cast_shadows), but records the pass `shadow-maps` into `passes`. The caller submits them
     /// before the first frame that reads the maps, and can time them.
     ///
@@ -47,14 +54,57 @@ impl Renderer {
         if !model.is_on() {
             return Ok(None);
         }
-        let maps = ShadowMaps::new(&self.gpu, &self.scene, &self.frame, lights, model)?;
+        let maps = ShadowMaps::new(
+            &self.gpu,
+            &self.scene,
+            &self.frame,
+            lights,
+            (model, self.shadow_ranges),
+        )?;
         let figures = maps.figures();
         self.shadows = Some(maps);
         self.record_shadow_maps(passes);
         Ok(Some(figures))
     }
 
-    /// Records the pass `shadow-maps`, which draws all maps again; nothing without maps.
+    /// Finds what hides lights from whole groups, for strategies with [`CullSettings::occlusion`](assign::CullSettings):
+    /// records the pass `occluders` into `passes`, after those of [`cast_shadows_in`](Self::cast_shadows_in).
+    /// [`frame`](Self::frame) hands it over from then on, until shadows are cast again.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] without shadow maps, and [`AssignError::OutOfMemory`].
+    pub fn find_occluders_in(
+        &mut self,
+        kept: OccluderDepth,
+        passes: &mut dyn Passes,
+    ) -> Result<ShadowFigures, ShadingError> {
+        let Some(maps) = &mut self.shadows else {
+            return Err(AssignError::Parameter {
+                field: "shadow model".into(),
+                value: ShadowModel::None.to_string(),
+                accepted: "a model with maps, cast before Renderer::find_occluders".into(),
+            }
+            .into());
+        };
+        maps.make_pyramid(&self.gpu, kept)?.record(passes);
+        Ok(maps.figures())
+    }
+
+    /// [`find_occluders_in`](Self::find_occluders_in), in a submission of its own.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`find_occluders_in`](Self::find_occluders_in).
+    pub fn find_occluders(&mut self, kept: OccluderDepth) -> Result<ShadowFigures, ShadingError> {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let figures = self.find_occluders_in(kept, &mut EncoderPasses { encoder: &mut encoder })?;
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(figures)
+    }
+
+    /// Records the pass `shadow-maps`, which draws all maps again, and the pass `occluders` if these
+    /// were asked for; nothing without maps.
     pub fn record_shadow_maps(&self, passes: &mut dyn Passes) {
         if let Some(maps) = &self.shadows {
             maps.record(&self.scene, &self.scene_group, passes);

@@ -15,8 +15,9 @@
 //!    rectangles.
 //! 2. [`plan`] gives each point the faces of a cube, half a cube or a cone, and each face its place in one atlas. If
 //!    the maps do not fit, all area lights get fewer.
-//! 3. [`ShadowMaps::record`] draws the depth of all triangles into every face, from both sides, because both sides of
-//!    a triangle block light in the [truth](crate::traced). Alpha masks keep their holes.
+//! 3. [`ShadowMaps::record`] draws the depth of triangles into every face, from both sides, because both sides of
+//!    a triangle block light in the [truth](crate::traced). Alpha masks keep their holes. A face leaves out parts of the
+//!    scene beside its frustum, and beyond the light's range where no sample lies ([`sight`]).
 //! 4. `shadow.wesl` looks a sample up in all maps of a light. Points below the sample's horizon do not count: the
 //!    light without shadows leaves them out already.
 //!
@@ -68,15 +69,17 @@ mod adaptive;
 mod banding;
 mod cast;
 mod clear_face;
+mod occluders;
 mod plan;
 mod points;
 mod quadtree;
 mod rectangle;
 mod refine;
+mod sight;
 mod start_level;
 mod views;
 
-use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Passes, View};
+use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Occluders, Passes, View};
 use bytemuck::cast_slice;
 
 use crate::{
@@ -90,7 +93,10 @@ use crate::{
 use adaptive::Adaptive;
 pub use adaptive::ShadowRefinement;
 use banding::Drawn;
+use occluders::Pyramid;
+pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::{Face, Plan};
+use sight::Sight;
 use views::Views;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
@@ -114,6 +120,8 @@ pub struct ShadowFigures {
     pub faces: u32,
     /// Width and height of the atlas, texels.
     pub atlas_px: [u32; 2],
+    /// Bytes of what hides lights from groups ([`Renderer::find_occluders`](crate::Renderer::find_occluders)); 0 without it.
+    pub occluder_bytes: u64,
 }
 
 impl ShadowFigures {
@@ -145,10 +153,14 @@ pub(crate) struct ShadowMaps {
     adaptive: Option<Adaptive>,
     /// Maps of lights that have no tree.
     fixed_maps: u32,
+    /// How far samples may lie that lights reach, in ranges of the lights.
+    ranges: f32,
+    /// What hides lights from groups, if asked for.
+    pyramid: Option<Pyramid>,
 }
 
 impl ShadowMaps {
-    /// Plans the maps of `lights` and allocates them.
+    /// Plans the maps of `lights` and allocates them. Samples may lie up to `ranges` of the lights' ranges from them.
     ///
     /// # Errors
     ///
@@ -159,7 +171,7 @@ impl ShadowMaps {
         scene: &SceneGpu,
         frame: &FrameBindings,
         lights: &LightBuffer,
-        model: ShadowModel,
+        (model, ranges): (ShadowModel, f32),
     ) -> Result<Self, ShadingError> {
         check_device(gpu)?;
         if lights.order().is_on_gpu() || lights.live_count().is_some() {
@@ -179,6 +191,7 @@ impl ShadowMaps {
             maps: plan.map_count,
             faces: plan.faces.len() as u32,
             atlas_px: plan.size,
+            occluder_bytes: 0,
         };
         let records_bytes: &[u8] = cast_slice(&plan.records);
         let records = gpu.storage("shadow records", records_bytes.len() as u64)?;
@@ -203,8 +216,10 @@ impl ShadowMaps {
             faces: plan.faces,
             pipelines,
             views,
-            bound: BoundMaps::new(model, atlas, records),
+            bound: BoundMaps::new(model, ranges, atlas, records),
             adaptive,
+            ranges,
+            pyramid: None,
         };
         maps.count_maps();
         Ok(maps)
@@ -265,11 +280,9 @@ impl ShadowMaps {
         let found = adaptive.last();
         let views = (&self.views.buffer, self.views.stride);
         adaptive.write(&patch, self.bound.records(), views, passes)?;
-        for (face, world_to_view) in &patch.faces {
-            self.faces[*face].world_to_view = *world_to_view;
-        }
+        patch.move_faces(&mut self.faces);
         self.count_maps();
-        let mut fresh: Vec<u32> = patch.faces.iter().map(|(face, _)| *face as u32).collect();
+        let mut fresh: Vec<u32> = patch.faces.iter().map(|moved| moved.face as u32).collect();
         fresh.sort_unstable();
         if !fresh.is_empty() {
             self.draw(scene, scene_group, &fresh, wgpu::LoadOp::Load, passes);
@@ -289,7 +302,7 @@ impl ShadowMaps {
         }
     }
 
-    /// Records the pass `shadow-maps`: the depth of all triangles in every face.
+    /// Records the pass `shadow-maps`: the depth of all triangles that a face may show.
     pub(crate) fn record(
         &self,
         scene: &SceneGpu,
@@ -331,9 +344,31 @@ impl ShadowMaps {
                 }
                 pass.set_bind_group(0, &self.views.group, &[*ix * self.views.stride]);
                 pass.set_bind_group(2, scene_group, &[]);
-                scene.draw(pass, scene.has_mask(), false, |key| self.pipelines.get(key));
+                let sight = Sight::new(face, self.ranges);
+                let may_see = |bounds| sight.may_see(bounds);
+                let pipeline = |key| self.pipelines.get(key);
+                scene.draw_pieces(pass, scene.has_mask(), may_see, pipeline);
             }
         });
+        if let Some(pyramid) = &self.pyramid {
+            pyramid.record(passes);
+        }
+    }
+
+    /// Makes the pyramid of depths. [`record`](Self::record) fills it from then on.
+    pub(crate) fn make_pyramid(
+        &mut self,
+        gpu: &Gpu,
+        kept: OccluderDepth,
+    ) -> Result<&Pyramid, ShadingError> {
+        let pyramid = Pyramid::new(gpu, self.bound.atlas(), self.figures.atlas_px, kept)?;
+        self.figures.occluder_bytes = pyramid.bytes();
+        Ok(self.pyramid.insert(pyramid))
+    }
+
+    /// What hides lights from groups; `None` without a pyramid.
+    pub(crate) fn occluders(&self) -> Option<Occluders<'_>> {
+        Some(self.pyramid.as_ref()?.occluders(self.bound.records()))
     }
 }
 

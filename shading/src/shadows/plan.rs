@@ -39,6 +39,10 @@ pub(super) struct Face {
     pub(super) origin: [u32; 2],
     /// Width and height, texels.
     pub(super) size: [u32; 2],
+    /// Its eye, world space.
+    pub(super) eye: Vec3,
+    /// Distance from the eye beyond which nothing hides a sample that the light reaches, metres: [`beyond`].
+    pub(super) reach_m: f32,
 }
 
 /// Planned maps.
@@ -133,6 +137,13 @@ fn is_rectangle(light: &Light) -> bool {
     matches!(&light.shape, LightShape::Area(emitter) if emitter.outline() == Outline::Rectangle)
 }
 
+/// A corner of a rectangle.
+fn corner_of(light: &Light) -> LightPoint {
+    let LightShape::Area(emitter) = &light.shape else { return LightPoint::MIDDLE };
+    let [x, y] = emitter.half_axes().map(Vec3::as_dvec3);
+    LightPoint { offset: x + y, ..LightPoint::MIDDLE }
+}
+
 /// The number of maps of a light. Other area lights than rectangles get the largest of [`MAP_COUNTS`] that is not
 /// above `maps`.
 fn maps_of(light: &Light, maps: u32) -> u64 {
@@ -204,12 +215,13 @@ impl Plan {
             px,
             columns,
             texel: 2.0 / f64::from(px - 2 * GUARD_PX * taps.isqrt()),
+            taps: f64::from(taps.isqrt()),
             squares: 0,
             faces: Vec::new(),
             maps: Vec::new(),
         };
         // The farthest texel centre that a look-up reads, along one axis and in all.
-        let across = 0.5 * f64::from(taps.isqrt()) + SNAP_PX;
+        let across = across(planner.taps);
         let reach = across * std::f64::consts::SQRT_2;
         let mut records = vec![[taps.isqrt(), px, bits(planner.texel), bits(reach)]];
         let first = 1 + 3 * lights.len();
@@ -224,7 +236,8 @@ impl Plan {
                     face_count: reach.face_count(),
                     turned: turned(axes_of(light)),
                 });
-                let waiting = vec![LightPoint::MIDDLE; maps as usize];
+                // Any point of the rectangle may take a place, so each reaches as far as a corner does.
+                let waiting = vec![corner_of(light); maps as usize];
                 records.extend(planner.add(light, waiting, first));
                 continue;
             }
@@ -250,6 +263,8 @@ struct Planner {
     columns: u32,
     /// Tangents per texel of a face that covers a quarter turn.
     texel: f64,
+    /// Texels on a side of the filter.
+    taps: f64,
     /// Squares that are taken.
     squares: u32,
     faces: Vec<Face>,
@@ -268,7 +283,8 @@ impl Planner {
         for point in &points {
             // Faces and shading start from the same rounded position.
             let eye = (light.position.as_dvec3() + point.offset).as_vec3();
-            let faces = self.faces(reach, axes, eye.as_dvec3(), near_m);
+            let reach_m = f64::from(light.radius_m()) + point.offset.length();
+            let faces = self.faces(reach, axes, eye, (near_m, reach_m));
             self.maps.extend([
                 point_record(eye, point.weight),
                 [faces[0], faces[1], faces[2], faces[3]],
@@ -289,7 +305,14 @@ impl Planner {
     }
 
     /// Adds the faces of a map; returns the place of each in the atlas, x in the low half and y in the high one.
-    fn faces(&mut self, reach: Reach, axes: DMat3, eye: DVec3, near_m: f64) -> [u32; FACES] {
+    /// `eye` is the point of the light, and the light reaches from `near_m` to `reach_m` around it.
+    fn faces(
+        &mut self,
+        reach: Reach,
+        axes: DMat3,
+        eye: Vec3,
+        (near_m, reach_m): (f64, f64),
+    ) -> [u32; FACES] {
         let px = self.px;
         let mut places = [0; FACES];
         let turned = turned(axes).into_iter().take(reach.face_count());
@@ -305,10 +328,12 @@ impl Planner {
             let side = 0.5 * f64::from(px) * texel;
             let rows = if is_half { [0.0, side] } else { [-side, side] };
             self.faces.push(Face {
-                world_to_view: world_to_view(right, down, -forward, eye),
+                world_to_view: world_to_view(right, down, -forward, eye.as_dvec3()),
                 view_to_clip: view_to_clip(side, rows, near_m),
                 origin,
                 size: [px, if is_half { px / 2 } else { px }],
+                eye,
+                reach_m: (reach_m * beyond(texel, self.taps)) as f32,
             });
             places[ix] = origin[0] | origin[1] << 16;
         }
@@ -325,6 +350,22 @@ pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
 fn turned(axes: DMat3) -> [(DVec3, DVec3, DVec3); FACES] {
     let (x, y, z) = (axes.x_axis, axes.y_axis, axes.z_axis);
     [(x, y, z), (y, z, x), (y, z, -x), (x, z, y), (x, z, -y), (x, y, -z)]
+}
+
+/// The farthest texel centre that a look-up reads, along one axis, texels.
+fn across(taps: f64) -> f64 {
+    0.5 * taps + SNAP_PX
+}
+
+/// How much farther from the eye than a sample the farthest thing may be that hides it, at most.
+///
+/// A look-up reads texels up to `shift` texels from the sample's, per axis: the offset moves it by at most 1.5 of the
+/// reach (`occluders.rs`, for the widest cone), and the filter is `taps` wide. It compares a depth that is at most
+/// `1 / (1 - r / 2)` times the sample's. At equal depth, a point whose tangents differ by `t` is at most `1 + t` times as far.
+fn beyond(texel: f64, taps: f64) -> f64 {
+    let reach = across(taps) * std::f64::consts::SQRT_2;
+    let shift = 1.5 * reach + taps + 1.0;
+    (1.0 + std::f64::consts::SQRT_2 * shift * texel) / (1.0 - 0.5 * reach * texel).max(0.1)
 }
 
 /// Single precision, as bits.

@@ -6,7 +6,7 @@ use assign::{Emitter, Light};
 use glam::{Mat4, Vec3};
 
 use super::{
-    plan::{Site, point_record},
+    plan::{Face, Site, point_record},
     quadtree::{Change, Node, POINTS, Quadtree, place_of, uniform_points},
 };
 
@@ -27,14 +27,33 @@ pub(super) struct Rectangle {
     tree: Quadtree,
 }
 
+/// A face that looks from another point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MovedFace {
+    /// Its index.
+    pub(super) face: usize,
+    /// The point, world space.
+    pub(super) eye: Vec3,
+    pub(super) world_to_view: Mat4,
+}
+
 /// What changes when points come and go: vectors of the records, each with its index, and faces that must be drawn,
 /// with their new transforms from world to view space.
 #[derive(Debug, Default)]
 pub(super) struct Patch {
     pub(super) records: Vec<(usize, Vec<[u32; 4]>)>,
-    pub(super) faces: Vec<(usize, Mat4)>,
+    pub(super) faces: Vec<MovedFace>,
     /// The number of maps that these are the faces of.
     pub(super) maps: u32,
+}
+
+impl Patch {
+    /// Turns the faces to their new points.
+    pub(super) fn move_faces(&self, faces: &mut [Face]) {
+        for MovedFace { face, eye, world_to_view } in &self.faces {
+            faces[*face] = Face { eye: *eye, world_to_view: *world_to_view, ..faces[*face] };
+        }
+    }
 }
 
 impl Rectangle {
@@ -127,20 +146,21 @@ impl Rectangle {
         let mut records = Vec::new();
         for (point, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0) {
             let eye = self.eye(point);
-            let place =
-                match self.places[point] {
-                    Some(place) => place,
-                    None => {
-                        let Some(place) = free.next() else { break };
-                        self.places[point] = Some(place);
-                        patch.maps += 1;
-                        let first = self.site.first_face + place * self.site.face_count;
-                        patch.faces.extend((0..self.site.face_count).map(|face| {
-                            (first + face, self.site.world_to_view(face, eye.as_dvec3()))
-                        }));
-                        place
-                    }
-                };
+            let place = match self.places[point] {
+                Some(place) => place,
+                None => {
+                    let Some(place) = free.next() else { break };
+                    self.places[point] = Some(place);
+                    patch.maps += 1;
+                    let first = self.site.first_face + place * self.site.face_count;
+                    patch.faces.extend((0..self.site.face_count).map(|face| MovedFace {
+                        face: first + face,
+                        eye,
+                        world_to_view: self.site.world_to_view(face, eye.as_dvec3()),
+                    }));
+                    place
+                }
+            };
             records.push(point_record(eye, weight));
             records.extend(self.addresses[place]);
         }

@@ -19,7 +19,7 @@ use crate::{
 const SIZE: [u32; 2] = [96, 64];
 
 /// A box between two corners: six rectangles that face outwards, or inwards with `turned`.
-fn walls_of(low: Vec3, high: Vec3, turned: bool) -> Vec<[Vec3; 3]> {
+pub(crate) fn walls_of(low: Vec3, high: Vec3, turned: bool) -> Vec<[Vec3; 3]> {
     let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
     let wall = |axis: usize, sign: f32| {

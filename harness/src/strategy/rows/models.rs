@@ -19,6 +19,7 @@ pub(super) const ROWS: &[Row] = &[Row {
         Axis::Source,
         Axis::AreaBounds,
         Axis::Storage,
+        Axis::Occlusion,
         Axis::Order,
         Axis::Cap,
         Axis::Reuse,

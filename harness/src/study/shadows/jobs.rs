@@ -4,6 +4,7 @@ use assign::LightShape;
 use glam::DVec3;
 use shading::{MAX_MAP_PX, MIN_MAP_PX, ShadowModel};
 
+use super::occlusion;
 use crate::{
     bench::Bench,
     cli::{self, Invocation, Size, StudyArgs},
@@ -76,10 +77,10 @@ const RANGE_SHARE: f32 = 0.5;
 const FEW: u32 = 4;
 
 /// How much the study looks at.
-struct Extent {
-    size: Size,
-    frames: &'static str,
-    warmup: &'static str,
+pub(crate) struct Extent {
+    pub(crate) size: Size,
+    pub(crate) frames: &'static str,
+    pub(crate) warmup: &'static str,
     /// Samples per pixel of T and P. From 64 on, T's rays only estimate the visible share.
     samples: &'static str,
     /// Sides of atlases, texels; the last one is that of `LIGHTS`.
@@ -103,7 +104,7 @@ struct Extent {
     downs: &'static [u32],
 }
 
-const FULL: Extent = Extent {
+pub(crate) const FULL: Extent = Extent {
     size: Size { width: 1280, height: 720 },
     frames: "32",
     warmup: "4",
@@ -121,7 +122,7 @@ const FULL: Extent = Extent {
     downs: &[1, 2, 4, 8, 16],
 };
 
-const QUICK: Extent = Extent {
+pub(crate) const QUICK: Extent = Extent {
     size: Size { width: 96, height: 54 },
     frames: "1",
     warmup: "0",
@@ -169,7 +170,14 @@ pub(crate) fn jobs(
     let ([core, _], _) = scene.boxes(bench)?;
     let range_m = core.diagonal() * RANGE_SHARE;
     let stops = stops(bench, args, scene, range_m)?;
-    Ok(plan(args, scene, range_m, &stops))
+    let mut jobs = plan(args, scene, range_m, &stops);
+    jobs.push(occlusion::job(args, scene, extent_of(args)));
+    Ok(jobs)
+}
+
+/// How much the study looks at.
+fn extent_of(args: &StudyArgs) -> &'static Extent {
+    if args.quick { &QUICK } else { &FULL }
 }
 
 /// The cameras that approach the only light of [`APPROACH`], the farthest first.
@@ -211,7 +219,7 @@ fn alike(range_m: f32) -> Vec<String> {
 }
 
 fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> Vec<Job> {
-    let extent = if args.quick { QUICK } else { FULL };
+    let extent = extent_of(args);
     let lit = |size| {
         let drawn = scene.options(args.size.unwrap_or(size), args.seed);
         [drawn, alike(range_m)].concat()

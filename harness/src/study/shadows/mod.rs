@@ -10,6 +10,7 @@
 mod cells;
 mod claims;
 mod jobs;
+mod occlusion;
 mod page;
 
 use super::against_truth::{TruthOf, compare_with_truths};

@@ -8,6 +8,7 @@ mod table;
 use self::charts::{Sweep, swept};
 use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, pipeline_of, steps};
 use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
+use super::occlusion;
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
 use crate::study::data::{Entry, entries};
@@ -104,6 +105,7 @@ pub(crate) fn parts(
     parts.push(Part::new("table", "All figures", TABLE_NOTE, body));
     let body = approach::table(done, scene);
     parts.push(Part::new(APPROACH, "Subdivision as the camera approaches", APPROACH_NOTE, body));
+    parts.push(occlusion::part(done, scene));
     parts.push(Part::new(
         "pictures",
         "What maps look like",
@@ -171,5 +173,6 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
             difference(floor)
         ));
     }
+    found.extend(occlusion::finding(done, scene));
     found
 }
