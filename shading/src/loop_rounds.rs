@@ -160,7 +160,7 @@ mod tests {
                 count: &count,
                 count_offset: 0,
                 capacity: 7,
-                kinds: LightKinds { spots: true, areas },
+                kinds: LightKinds { spots: true, areas, curved: false },
                 bounds: (Vec3::ZERO, Vec3::ONE),
                 radius_max_m: 1.0,
                 step_max_m: None,

@@ -206,7 +206,7 @@ fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
         .module("package::gloss", include_str!("../../src/shaders/gloss.wesl"))
         .module("package::reflected", include_str!("../../src/shaders/reflected.wesl"))
         .flag("lane_bounds", false)
-        .light_kinds(LightKinds { spots: false, areas: true })
+        .light_kinds(LightKinds { areas: true, ..LightKinds::default() })
         .create(&gpu, "package::driver")
         .unwrap();
     let lights: Vec<Light> = pairs.iter().map(|pair| pair.light).collect();

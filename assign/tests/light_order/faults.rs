@@ -43,7 +43,7 @@ fn accepted(gpu: &Gpu, records: &[Record]) -> Vec<bool> {
         count: &own[3],
         count_offset: 0,
         capacity: count,
-        kinds: LightKinds { spots: true, areas: true },
+        kinds: LightKinds::EVERY,
         bounds: (Vec3::new(0.0, -1.0, -1.0), Vec3::new(count as f32, 1.0, 1.0)),
         radius_max_m: RADIUS_MAX_M,
         step_max_m: None,
