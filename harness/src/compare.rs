@@ -87,6 +87,7 @@ pub fn compare_on(
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
+    stage.area_lod = args.area_lod.map(|angle| angle as f32);
     // Layers are drawn with one sample per pixel.
     stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;

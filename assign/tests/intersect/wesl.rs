@@ -177,6 +177,7 @@ fn compare(
             // Scenes with spots or area lights have point lights too.
             let kind = match i % 4 {
                 1 if kinds.spots => Kind::Spot,
+                3 if kinds.curved => Kind::Curved,
                 2 | 3 if kinds.areas => Kind::Area,
                 2 | 3 if kinds.spots => Kind::Spot,
                 _ => Kind::Point,

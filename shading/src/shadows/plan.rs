@@ -79,7 +79,7 @@ impl Reach {
                 Self::Half
             }
             LightShape::Spot { .. } => Self::All,
-            LightShape::Area(emitter) if emitter.two_sided => Self::All,
+            LightShape::Area(emitter) if emitter.shines_all_around() => Self::All,
             LightShape::Area(_) | LightShape::Vpl { .. } => Self::Half,
         }
     }
