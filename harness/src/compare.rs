@@ -9,8 +9,9 @@ use shading::{EDGE, LightBvh, ListCheck, Mode};
 
 use crate::{
     against_image,
+    area_options::check_area_options,
     bench::Bench,
-    checks::{check_area_options, check_options, checked, remove_stale, served},
+    checks::{check_options, checked, remove_stale, served},
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::{note_faults, note_flaws},

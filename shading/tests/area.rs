@@ -24,6 +24,10 @@ fn linearly_transformed_cosines_match_f64() {
     }
 }
 
+fn is_curved(light: &Light) -> bool {
+    matches!(&light.shape, LightShape::Area(emitter) if emitter.outline().is_curved())
+}
+
 fn match_f64(gpu: &assign::Gpu, lights: &[Light]) {
     let buffer = LightBuffer::new(gpu, lights).unwrap();
     let queries = queries(lights, 6_000);
@@ -36,7 +40,9 @@ fn match_f64(gpu: &assign::Gpu, lights: &[Light]) {
         let expected = ltc_contribution(&table, light, position, &surface, to_eye);
         let off = (f64::from(answer[0]) - expected.x).abs() / (expected.x.abs() + 1e-3);
         worst = worst.max(off);
-        assert!(off < 2e-3, "{answer:?}, expected {expected}: {query:?} {light:?}");
+        // An ellipse's cone is the root of a cubic, which single precision finds less exactly.
+        let most = if lights.iter().any(is_curved) { 6e-3 } else { 2e-3 };
+        assert!(off < most, "{answer:?}, expected {expected}: {query:?} {light:?}");
         lit += usize::from(expected.x > 1e-4);
     }
     println!("{}: {lit} lit, off by {worst:.1e} at most", gpu.info.name);
@@ -99,7 +105,7 @@ fn far_area_lights_are_points_where_the_error_allows() {
             let off = |(a, b): (&[f32; 4], &[f32; 4])| f64::from((a[0] - b[0]).abs());
             far.iter().zip(&whole).map(off).sum::<f64>() / sum
         });
-        println!("errors by solid angle: {errors:.2e?}");
+        println!("errors by solid angle: {errors:.5?}");
         assert!(errors[0] == 0.0 && errors[1] > 0.0 && errors[2] < 0.01, "{errors:?}");
         assert!(errors.windows(2).all(|two| two[0] < two[1]), "{errors:?}");
     }

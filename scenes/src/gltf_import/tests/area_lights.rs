@@ -71,12 +71,13 @@ fn extras_carry_curved_area_lights() {
         let scene = with_area_light(light).expect("valid");
         let light = *scene.lights.iter().find(|l| l.kind() == kind).expect("there");
         light.check().expect("sound");
+        let hash = scene.hash();
         let scaled = scene.scaled(2.0).expect("in range");
         let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
         let twice = scaled.lights.iter().find(|l| l.kind() == kind).expect("there");
         let LightShape::Area(twice) = twice.shape else { panic!("{twice:?}") };
         assert_eq!(twice.radius_m(), 2.0 * emitter.radius_m());
-        (emitter, light.intensity, scene.hash())
+        (emitter, light.intensity, hash)
     };
     let sphere = json!({ "shape": "sphere", "radius": 0.5, "intensity": 3.0 });
     let (found, intensity, hash) = emitter(sphere, LightKind::Sphere);
