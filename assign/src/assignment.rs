@@ -174,7 +174,7 @@ impl<'a> Lookup<'a> {
     fn shader(&self, slots: &Slots<'_>) -> Shader<'static> {
         Shader::new(slots.lists_group)
             .strategy(self.module)
-            .light_kinds(LightKinds { spots: true, areas: true })
+            .light_kinds(LightKinds::EVERY)
             .without_subgroups()
     }
 

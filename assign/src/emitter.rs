@@ -1,12 +1,15 @@
-//! Flat emitters: rectangles and convex polygons.
+//! Emitters: rectangles, convex polygons and discs, which are flat; spheres and lines, which are not.
 //!
-//! An emitter lies in a plane through its light's position. Its light reaches the points that are
+//! A flat emitter lies in a plane through its light's position. Its light reaches the points that are
 //! closer to the emitter than the light's range; if the emitter is one-sided, only those in front
 //! of its plane. So the support is the outline extended by a ball, or by the front half of a ball.
 //! Along any axis it extends as far as the outline plus a ball, or plus a cone of half angle π/2
 //! around the normal. Culling therefore reuses its code for spots.
+//!
+//! A sphere is a point, and a line is a segment, each extended by a ball of its radius (`curved.rs`).
 
 mod check;
+mod curved;
 
 use glam::{DVec3, Mat3, Vec3};
 
@@ -26,9 +29,23 @@ pub enum Outline {
     Rectangle,
     /// 3 to [`MAX_VERTICES`] vertices, convex.
     Polygon,
+    /// A circle.
+    Disc,
+    /// A ball around the light's position.
+    Sphere,
+    /// A tube with round ends: all points within its radius of a segment.
+    Line,
 }
 
-/// A flat emitter. Its vertices are relative to its light's position.
+impl Outline {
+    /// Whether it has no vertices: a disc, a sphere or a line.
+    pub fn is_curved(self) -> bool {
+        matches!(self, Self::Disc | Self::Sphere | Self::Line)
+    }
+}
+
+/// An emitter. It emits the same radiance from every point of its surface, in every direction. Its vertices are
+/// relative to its light's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
     outline: Outline,
@@ -37,7 +54,9 @@ pub struct Emitter {
     vertices: [Vec3; MAX_VERTICES],
     half_x: Vec3,
     half_y: Vec3,
-    /// Whether it emits from its back as well.
+    /// Radius of a disc, a sphere or a line, metres; 0 for other outlines.
+    radius_m: f32,
+    /// Whether a flat emitter emits from its back as well. Spheres and lines emit outwards, whatever it says.
     pub two_sided: bool,
     /// Where the window of the diffuse term reaches 0, as a share of the light's range, above 0 and
     /// at most 1. The specular term extends to the full range (Swarbrick 2025, section 3.4).
@@ -61,23 +80,34 @@ impl Emitter {
             vertices,
             half_x,
             half_y,
+            radius_m: 0.0,
             two_sided: false,
             diffuse_share: 1.0,
         }
     }
 
-    /// An emitter from its record: half axes, and vertices relative to the light's position. `None`
-    /// if there are too many vertices.
+    /// An emitter from its record: half axes, radius, and vertices relative to the light's position.
+    /// `None` if there are too many vertices.
     pub(crate) fn from_parts(
         outline: Outline,
         [half_x, half_y]: [Vec3; 2],
+        radius_m: f32,
         corners: &[Vec3],
     ) -> Option<Self> {
         let mut vertices = [Vec3::ZERO; MAX_VERTICES];
         vertices.get_mut(..corners.len())?.copy_from_slice(corners);
         let count = corners.len() as u8;
         let two_sided = false;
-        Some(Self { outline, count, vertices, half_x, half_y, two_sided, diffuse_share: 1.0 })
+        Some(Self {
+            outline,
+            count,
+            vertices,
+            half_x,
+            half_y,
+            radius_m,
+            two_sided,
+            diffuse_share: 1.0,
+        })
     }
 
     /// Makes a one-sided convex polygon from its vertices: world space, metres, counter-clockwise
@@ -116,12 +146,12 @@ impl Emitter {
         }
         let outline = Outline::Polygon;
         let count = count as u8;
-        let emitter =
-            Self { outline, count, vertices, half_x, half_y, two_sided: false, diffuse_share: 1.0 };
+        let rectangle = Self::rectangle(half_x, half_y);
+        let emitter = Self { outline, count, vertices, ..rectangle };
         Ok((emitter, center))
     }
 
-    /// The same emitter, emitting from both sides.
+    /// The same emitter, emitting from both sides if it is flat.
     #[must_use]
     pub fn two_sided(self) -> Self {
         Self { two_sided: true, ..self }
@@ -140,6 +170,7 @@ impl Emitter {
             vertices: self.vertices.map(|v| v * factor),
             half_x: self.half_x * factor,
             half_y: self.half_y * factor,
+            radius_m: self.radius_m * factor,
             ..self
         }
     }
@@ -151,6 +182,9 @@ impl Emitter {
         if self.outline == Outline::Rectangle {
             let Self { two_sided, diffuse_share, .. } = self;
             return Self { two_sided, diffuse_share, ..Self::rectangle(x, y) };
+        }
+        if self.is_solid() {
+            return Self { half_x: x, ..self };
         }
         // Rotated vertices are rounded, and the rectangle must still hold them.
         let [half_x, half_y] = [x, y].map(|axis| axis * (1.0 + 8.0 * f32::EPSILON));
@@ -167,28 +201,40 @@ impl Emitter {
         &self.vertices[..usize::from(self.count)]
     }
 
-    /// Half axes of the rectangle, or of the smallest rectangle around the polygon, metres.
+    /// Half axes of the rectangle, or of the smallest rectangle around the polygon or the disc, metres. A
+    /// line's first one leads from its middle to the middle of an end; all others of spheres and lines are zero.
     pub fn half_axes(&self) -> [Vec3; 2] {
         [self.half_x, self.half_y]
     }
 
-    /// Unit normal of the front; zero for an emitter without area.
+    /// Unit normal of the front; zero for spheres, for lines and for an emitter without area.
     pub fn normal(&self) -> Vec3 {
         (self.area_vector() / self.area_vector().length().max(f64::MIN_POSITIVE)).as_vec3()
     }
 
-    /// Area of one side, square metres.
+    /// Area of one side, square metres; of a sphere or a line, the largest area of its outline as seen from
+    /// far away.
     pub fn area(&self) -> f32 {
-        self.area_vector().length() as f32
+        let area_m2 = match self.outline {
+            Outline::Sphere | Outline::Line => self.outline_area(),
+            Outline::Rectangle | Outline::Polygon | Outline::Disc => self.area_vector().length(),
+        };
+        area_m2 as f32
     }
 
     /// Radius of a sphere around the light's position that holds the emitter, metres.
     pub fn radius(&self) -> f32 {
+        if self.outline.is_curved() {
+            return self.farthest_m().next_up();
+        }
         self.vertices().iter().map(|v| v.length()).fold(0.0, f32::max).next_up()
     }
 
     /// The point of the emitter closest to `offset`, both relative to the light's position.
     pub fn closest(&self, offset: DVec3) -> DVec3 {
+        if self.outline.is_curved() {
+            return self.closest_curved(offset);
+        }
         let normal = self.area_vector().normalize_or_zero();
         let on_plane = offset - normal * normal.dot(offset - self.vertices[0].as_dvec3());
         if self.edges().all(|(a, b)| normal.dot((b - a).cross(on_plane - a)) >= 0.0) {
@@ -206,8 +252,11 @@ impl Emitter {
     }
 
     /// How far `offset` lies in front of the emitter's plane, metres. The distance has no sign if
-    /// the emitter is two-sided.
+    /// the emitter is two-sided. For a sphere or a line, it is the distance to its surface, negative inside.
     pub fn in_front(&self, offset: DVec3) -> f64 {
+        if self.is_solid() {
+            return self.outside(offset);
+        }
         let along = self.area_vector().normalize_or_zero().dot(offset);
         if self.two_sided { along.abs() } else { along }
     }
@@ -221,6 +270,9 @@ impl Emitter {
     /// Half the sum of the edges' cross products: a vector along the normal, whose length is the
     /// area.
     fn area_vector(&self) -> DVec3 {
+        if self.outline.is_curved() {
+            return self.curved_area_vector();
+        }
         0.5 * self.edges().map(|(a, b)| a.cross(b)).sum::<DVec3>()
     }
 }

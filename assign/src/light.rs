@@ -2,8 +2,8 @@
 //!
 //! Every light's contribution is multiplied by the window `(1 - (d / range)^4)^2`, clamped at 0,
 //! where `d` is the distance to the closest point of the emitter. So a light reaches exactly one
-//! set of points, its *support*: a ball, a ball cut by a cone, half a ball, or a rounded rectangle
-//! or polygon that its plane cuts if it is one-sided. Culling and shading read the same `range`.
+//! set of points, its *support*: a ball, a ball cut by a cone, half a ball, a rounded line, or a rounded
+//! rectangle, polygon or disc that its plane cuts if it is one-sided. Culling and shading read the same `range`.
 
 use glam::{DVec3, Vec3};
 
@@ -25,8 +25,8 @@ pub enum LightShape {
         /// Half angle at which the light ends, radians, [`MIN_SPOT_ANGLE`] to π.
         outer_angle: f32,
     },
-    /// Emits the same radiance from every point of a flat emitter, in every direction in front of
-    /// it.
+    /// Emits the same radiance from every point of an emitter, in every direction in front of its
+    /// surface.
     Area(Emitter),
     /// A virtual point light: emits from a point into the half space in front of it, by the cosine
     /// to its normal, as a matte surface does.
@@ -44,12 +44,13 @@ pub enum LightShape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Position, metres. An area light's position is the centre of its rectangle, or of the
-    /// smallest rectangle around its polygon.
+    /// smallest rectangle around its polygon, and the middle of every other emitter.
     pub position: Vec3,
     /// Distance at which the light's window reaches 0, metres, [`MIN_RANGE_M`] to [`MAX_RANGE_M`].
     pub range_m: f32,
     /// Radiant intensity, linear RGB, each channel 0 to [`MAX_INTENSITY`] and not all 0. For an
-    /// area light it is the intensity along the normal: radiance times area.
+    /// area light it is the intensity along the normal: radiance times area. A sphere has the same intensity in
+    /// all directions, and a line that across its axis: radiance times [`Emitter::area`].
     pub intensity: Vec3,
     /// What kind of light it is.
     pub shape: LightShape,
@@ -185,7 +186,7 @@ impl Light {
             LightShape::Area(emitter) => {
                 let range = f64::from(self.range_m);
                 let window = 1.0 - to_point.distance(emitter.closest(to_point)) / range;
-                if emitter.two_sided {
+                if emitter.two_sided && !emitter.is_solid() {
                     window
                 } else {
                     window.min(emitter.in_front(to_point) / range)
@@ -204,10 +205,7 @@ impl Light {
     pub fn above_horizon(&self, point: DVec3, normal: DVec3) -> f64 {
         let height = normal.dot(self.position.as_dvec3() - point);
         let rise = match &self.shape {
-            LightShape::Area(emitter) => {
-                let heights = emitter.vertices().iter().map(|v| normal.dot(v.as_dvec3()));
-                heights.fold(f64::NEG_INFINITY, f64::max)
-            }
+            LightShape::Area(emitter) => emitter.extent_along(normal),
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => 0.0,
         };
         (height + rise) / f64::from(self.range_m)

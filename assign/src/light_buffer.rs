@@ -29,20 +29,16 @@ pub(crate) use recorded::FrameLights;
 pub use travel::Travel;
 use wide::WideLights;
 
-/// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
-/// shading.
+/// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for shading.
 ///
-/// The buffer omits faulty lights and lights of intensity 0, unless it [keeps
-/// indices](Self::keep_indices), and sorts the others by its [`LightOrder`]. A light's index is its
-/// place in that order, its *slot*.
+/// The buffer omits faulty lights and lights of intensity 0, unless it [keeps indices](Self::keep_indices), and sorts the
+/// others by its [`LightOrder`]. A light's index is its place in that order, its *slot*.
 ///
 /// - For lights that stand still, [`ordered`](Self::ordered) sorts them on the CPU, once.
-/// - For lights that move, [`LightOrder::Gpu`] sorts and boxes them on the GPU. Call
-///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before all
-///   passes that read the lights.
-/// - For lights that the renderer's own kernel writes, [`from_gpu`](Self::from_gpu) takes its
-///   buffers. Call [`update_from_gpu`](Self::update_from_gpu) and `record` in each frame. No light
-///   crosses to the CPU.
+/// - For lights that move, [`LightOrder::Gpu`] sorts and boxes them on the GPU. Call [`update`](Self::update) with each
+///   frame's lights, and [`record`](Self::record) before all passes that read the lights.
+/// - For lights that the renderer's own kernel writes, [`from_gpu`](Self::from_gpu) takes its buffers. Call
+///   [`update_from_gpu`](Self::update_from_gpu) and `record` in each frame. No light crosses to the CPU.
 #[derive(Debug)]
 pub struct LightBuffer {
     order: LightOrder,
@@ -229,10 +225,9 @@ impl LightBuffer {
     /// buffers keep the lights of an earlier frame.
     ///
     /// - Record it outside of any other pass, because it also copies and clears buffers.
-    /// - Record it after [`update`](Self::update) or [`update_from_gpu`](Self::update_from_gpu), into
-    ///   an encoder that is submitted before the next update. Updates write through the queue, so
-    ///   each takes effect at the start of the next submission, and of two updates before one
-    ///   submission only the second does.
+    /// - Record it after [`update`](Self::update) or [`update_from_gpu`](Self::update_from_gpu), into an encoder that is
+    ///   submitted before the next update. Updates write through the queue, so each takes effect at the start of the next
+    ///   submission, and of two updates before one submission only the second does.
     /// - Record it before the passes that read the lights, and after those of the renderer's kernel
     ///   that write them and their number: in the same encoder, or in encoders that are submitted in
     ///   this order.
@@ -252,8 +247,8 @@ impl LightBuffer {
         self.living.as_ref().map(|living| FrameLights::of(living.recorded()))
     }
 
-    /// Number of slots that strategies see: the accepted lights. With [`LightOrder::Gpu`] there may
-    /// be empty slots among them, and for lights from the GPU it is the most lights that fit.
+    /// Number of slots that strategies see: the accepted lights. With [`LightOrder::Gpu`] there may be empty slots among
+    /// them, and for lights from the GPU it is the most lights that fit.
     pub fn count(&self) -> u32 {
         match (&self.living, &self.wide) {
             (Some(living), _) => living.slots(),

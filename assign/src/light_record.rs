@@ -23,6 +23,12 @@ pub enum LightKind {
     Polygon = 3,
     /// [`LightShape::Vpl`].
     Vpl = 4,
+    /// [`LightShape::Area`] with a disc.
+    Disc = 5,
+    /// [`LightShape::Area`] with a sphere.
+    Sphere = 6,
+    /// [`LightShape::Area`] with a line.
+    Line = 7,
 }
 
 /// The kinds besides points that occur among some lights. Shaders are compiled for exactly these.
@@ -30,18 +36,25 @@ pub enum LightKind {
 pub struct LightKinds {
     /// Spots or virtual point lights, whose supports are cut by cones: the flag `spots`.
     pub spots: bool,
-    /// Rectangles or polygons: the flag `areas`.
+    /// Emitters: the flag `areas`.
     pub areas: bool,
+    /// Discs, spheres or lines among them: the flag `curved`, only together with `areas`.
+    pub curved: bool,
 }
 
 impl LightKinds {
     /// Every combination.
-    pub const ALL: [Self; 4] = [
-        Self { spots: false, areas: false },
-        Self { spots: true, areas: false },
-        Self { spots: false, areas: true },
-        Self { spots: true, areas: true },
+    pub const ALL: [Self; 6] = [
+        Self { spots: false, areas: false, curved: false },
+        Self { spots: true, areas: false, curved: false },
+        Self { spots: false, areas: true, curved: false },
+        Self { spots: true, areas: true, curved: false },
+        Self { spots: false, areas: true, curved: true },
+        Self { spots: true, areas: true, curved: true },
     ];
+
+    /// All kinds at once.
+    pub const EVERY: Self = Self { spots: true, areas: true, curved: true };
 
     /// The kinds that occur among `lights`.
     pub fn among(lights: &[Light]) -> Self {
@@ -51,15 +64,20 @@ impl LightKinds {
     /// These kinds and that of a light.
     pub(crate) fn including(self, light: &Light) -> Self {
         let is_cut = matches!(light.shape, LightShape::Spot { .. } | LightShape::Vpl { .. });
+        let (is_area, is_curved) = match &light.shape {
+            LightShape::Area(emitter) => (true, emitter.outline().is_curved()),
+            _ => (false, false),
+        };
         Self {
             spots: self.spots || is_cut,
-            areas: self.areas || matches!(light.shape, LightShape::Area(_)),
+            areas: self.areas || is_area,
+            curved: self.curved || is_curved,
         }
     }
 
     /// Whether a shader compiled for these kinds can shade all lights of `others`.
     pub fn cover(self, others: Self) -> bool {
-        self.spots >= others.spots && self.areas >= others.areas
+        self.spots >= others.spots && self.areas >= others.areas && self.curved >= others.curved
     }
 }
 
@@ -109,6 +127,9 @@ impl Light {
             LightShape::Area(emitter) => match emitter.outline() {
                 Outline::Rectangle => LightKind::Rectangle,
                 Outline::Polygon => LightKind::Polygon,
+                Outline::Disc => LightKind::Disc,
+                Outline::Sphere => LightKind::Sphere,
+                Outline::Line => LightKind::Line,
             },
         }
     }
@@ -128,8 +149,9 @@ impl Light {
     /// - A virtual point light has `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance
     ///   squared, 0)`.
     /// - An area light has `(normal, range)`, `(half x, diffuse range)`, `(half y, vertex count)`,
-    ///   `(area, 0, 0, 0)` and one `(vertex, 0)` per vertex. The count is negative if the emitter is
-    ///   two-sided; vertices are relative to the light's position.
+    ///   `(area, radius, 0, 0)` and one `(vertex, 0)` per vertex. The count is negative if the emitter
+    ///   shines to all sides; vertices are relative to the light's position. Discs, spheres and lines have no
+    ///   vertices and a count of 1 or -1; all others have a radius of 0.
     pub fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
         let first_shape = shapes.len() as u32;
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
@@ -145,12 +167,12 @@ impl Light {
         }
         if let LightShape::Area(emitter) = &self.shape {
             let [half_x, half_y] = emitter.half_axes();
-            let count = emitter.vertices().len() as f32;
-            let count = if emitter.two_sided { -count } else { count };
+            let count = emitter.vertices().len().max(1) as f32;
+            let count = if emitter.shines_all_around() { -count } else { count };
             shapes.push(emitter.normal().extend(self.range_m).to_array());
             shapes.push(half_x.extend(self.diffuse_range_m()).to_array());
             shapes.push(half_y.extend(count).to_array());
-            shapes.push([emitter.area(), 0.0, 0.0, 0.0]);
+            shapes.push([emitter.area(), emitter.radius_m(), 0.0, 0.0]);
             shapes.extend(emitter.vertices().iter().map(|v| v.extend(0.0).to_array()));
         }
         LightEmission {

@@ -73,7 +73,8 @@ impl<'a> Shader<'a> {
 
     /// Compiles the code for lights of these kinds.
     pub fn light_kinds(self, kinds: LightKinds) -> Self {
-        self.flag("spots", kinds.spots).flag("areas", kinds.areas)
+        let shader = self.flag("spots", kinds.spots).flag("areas", kinds.areas);
+        shader.flag("curved", kinds.areas && kinds.curved)
     }
 
     /// Adds or replaces a module.

@@ -15,7 +15,7 @@ pub struct StrategyWesl<'a> {
     /// with `package::strategy::`, so that they meet no module of a renderer.
     pub imports: &'a [(&'a str, &'a str)],
     /// Name and value of each flag that these modules read with `@if`, without the contract's own (`spots`,
-    /// `areas`, `hard_cut`, `no_cut`, `specular_reach`, `anywhere`, `multisampled`, `lanes_reserve`, and those of look-ups: `lane_bounds`, `subgroups`, `walk_nodes`, `listed`,
+    /// `areas`, `curved`, `hard_cut`, `no_cut`, `specular_reach`, `anywhere`, `multisampled`, `lanes_reserve`, and those of look-ups: `lane_bounds`, `subgroups`, `walk_nodes`, `listed`,
     /// `both_masks`). The renderer must have no flag of the same name.
     pub flags: &'a [(&'a str, bool)],
     /// How a sample's lights are read.

@@ -22,7 +22,7 @@ fn group_bounds(group: u32) -> GroupBounds {
 
 fn kernel() -> LinkedModule {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
-    let kinds = LightKinds { spots: true, areas: true };
+    let kinds = LightKinds::EVERY;
     let source = Culler::kernel_source(GroupShape::Box, settings, false, STRATEGY, kinds).unwrap();
     LinkedModule::new("the culling kernel", &source)
 }

@@ -121,7 +121,7 @@ fn names_without_a_prefix_clash() {
 fn bindings_stand_where_the_renderer_wants_them() {
     let places = |slots: &Slots<'_>| -> Vec<(String, (u32, u32))> {
         let reader = LightReader::Walk { team: Team::Lane, source: LightSource::Hierarchy };
-        let kinds = LightKinds { spots: true, areas: true };
+        let kinds = LightKinds::EVERY;
         let text = shader(reader, kinds).wgsl(slots).expect("links");
         let module = LinkedModule::new("the look-up", &text);
         let variables = module.module().global_variables.iter();

@@ -6,6 +6,7 @@ use assign::{AssignError, Gpu, check_listed_reach};
 use shading::{Cut, Mode};
 
 use crate::{
+    area_options::{check_area_lod, check_lit_by_emitters},
     choice::Choice,
     cli::{BAD_INPUT, CliError, CompareArgs, LayerArgs, MotionChoice, PicturesChoice, StageArgs},
     error::HarnessError,
@@ -48,6 +49,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         return Err(CliError::out_of_range("--cut", args.cut.name(), accepted));
     }
     check_reach(args.specular_reach, args.cut)?;
+    check_area_lod(args)?;
     check_shadows(args.shadows, &args.stage, &args.layers, (args.path, args.msaa))?;
     check_occlusion(args.shadows, choices)?;
     if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
@@ -268,28 +270,12 @@ fn check_serves(choice: &Choice, gpu: &Gpu, stage: &Stage, cut: Cut) -> Result<(
                 }
                 .into());
             }
+            check_lit_by_emitters(choice, stage)?;
             raster_spheres(stage, cut)?;
         }
         Method::Clay => {}
     }
     Ok(())
-}
-
-/// Refuses options of area lights where no light is an area light. Only the scene's file tells.
-pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<(), CliError> {
-    let given = [
-        ("--area-model", args.area_model.map(|model| model.to_string())),
-        ("--influence", args.stage.influence.map(|least| least.to_string())),
-    ];
-    let has_areas = stage.lights.kinds().areas || stage.light_count() == 0;
-    match given.into_iter().find_map(|(option, value)| Some((option, value?))) {
-        Some((option, value)) if !has_areas => {
-            let accepted =
-                "left out, because no light is an area light (--areas SHARE scatters some)";
-            Err(CliError::out_of_range(option, &value, accepted))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Removes the report of an earlier run. If this run is interrupted, the old report must not stand beside
@@ -377,6 +363,7 @@ mod tests {
             ("--unbounded --cut never", "--cut is never: "),
             ("--against truth.exr --pictures none", "--against is truth.exr: "),
             ("--specular-reach 4 --cut never", "--cut is never: "),
+            ("--area-lod 0.01 --area-model point", "--area-lod is 0.01: "),
         ] {
             let error = check(line).expect_err(line).to_string();
             assert!(error.starts_with(refused), "{line}: {error}");
@@ -388,6 +375,7 @@ mod tests {
             "--path --checks 0 --pictures none",
             "--temporal --checks 2 --frames 1",
             "--temporal --path --frames 2 --cut never",
+            "--area-lod 0.01 --area-model mrp",
         ] {
             assert_eq!(check(line), Ok(()), "{line}");
         }

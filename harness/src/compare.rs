@@ -9,8 +9,9 @@ use shading::{EDGE, LightBvh, ListCheck, Mode, traced::TracedScene};
 
 use crate::{
     against_image,
+    area_options::check_area_options,
     bench::Bench,
-    checks::{check_area_options, check_options, checked, remove_stale, served},
+    checks::{check_options, checked, remove_stale, served},
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::{note_faults, note_flaws},
@@ -88,6 +89,7 @@ pub fn compare_on(
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
+    stage.area_lod = args.area_lod.map(|angle| angle as f32);
     // Layers are drawn with one sample per pixel.
     stage.sample_pixels(1)?;
     stage.show_layers(&args.layers, args.stage.seed)?;

@@ -105,6 +105,7 @@ pub fn set_stage<'a>(
     stage.area_model = args.area_model.unwrap_or_default();
     stage.compensation = args.compensate.map(|lights| lights as f32);
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
+    stage.area_lod = args.area_lod.map(|angle| angle as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders: false })?;
     if args.path {

@@ -4,6 +4,7 @@
 
 pub mod advise;
 mod against_image;
+mod area_options;
 pub mod bench;
 pub mod camera;
 pub mod chart;

@@ -34,7 +34,7 @@ pub struct Moving {
     /// The frame whose lights the buffer last took.
     shown: Option<u32>,
     /// Lights of each kind at rest.
-    kinds: [u64; 5],
+    kinds: [u64; 8],
     /// Faulty lights at rest.
     rejected: Vec<RejectedLight>,
     /// The most lights that were left out in a frame.
@@ -164,7 +164,7 @@ impl Moving {
     }
 
     /// The number of lights of each kind at rest, by the kind's number.
-    pub fn kinds(&self) -> [u64; 5] {
+    pub fn kinds(&self) -> [u64; 8] {
         self.kinds
     }
 
@@ -279,8 +279,8 @@ fn rejected_of(lights: &[Light]) -> Vec<RejectedLight> {
 }
 
 /// The number of sound lights of each kind, by the kind's number.
-pub(crate) fn kinds_of(lights: &[Light]) -> [u64; 5] {
-    let mut kinds = [0; 5];
+pub(crate) fn kinds_of(lights: &[Light]) -> [u64; 8] {
+    let mut kinds = [0; 8];
     for light in lights.iter().filter(|light| light.check().is_ok()) {
         kinds[light.kind() as usize] += 1;
     }

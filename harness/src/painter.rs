@@ -45,6 +45,7 @@ impl<'a> Painter<'a> {
                     compensation: stage.compensation,
                     stochastic: *stochastic,
                     specular_reach: stage.specular_reach,
+                    area_lod: stage.area_lod,
                     suns: stage.suns,
                     shadows: stage.shadows,
                 };

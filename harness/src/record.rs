@@ -180,6 +180,7 @@ pub fn record(
             cut: Some(plan.cut.name().to_owned()),
             compensation: args.compensate,
             specular_reach: args.specular_reach,
+            area_lod: args.area_lod,
             shadows: stage.shadow_setting(),
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),

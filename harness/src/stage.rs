@@ -43,6 +43,8 @@ pub struct Stage {
     pub compensation: Option<f32>,
     /// With `--specular-reach N`, the number N.
     pub specular_reach: Option<f32>,
+    /// The solid angle below which an area light is a point, steradians.
+    pub area_lod: Option<f32>,
     /// How lights are shadowed. The renderer has the maps.
     pub shadows: ShadowModel,
     /// The time that drawing the maps once takes, ms, if there are any.
@@ -134,6 +136,7 @@ impl Stage {
             area_model: AreaModel::default(),
             compensation: None,
             specular_reach: None,
+            area_lod: None,
             shadows: ShadowModel::None,
             shadow_draw_ms: None,
             shadow_rounds: None,
@@ -343,7 +346,7 @@ impl Stage {
     }
 
     /// Lights of each kind, by name, and suns. Lights that the GPU moves count as at rest.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 6] {
+    pub fn light_kinds(&self) -> [(&'static str, u64); 9] {
         let mut kinds = match &self.moving {
             Some(moving) => moving.kinds(),
             None => kinds_of(self.lights.lights()),
@@ -357,6 +360,9 @@ impl Stage {
             ("spot", count(LightKind::Spot)),
             ("rectangle", count(LightKind::Rectangle)),
             ("polygon", count(LightKind::Polygon)),
+            ("disc", count(LightKind::Disc)),
+            ("sphere", count(LightKind::Sphere)),
+            ("line", count(LightKind::Line)),
             ("vpl", count(LightKind::Vpl)),
             ("sun", self.suns.as_slice().len() as u64),
         ]

@@ -132,6 +132,12 @@ impl Scene {
                     (1, direction, [inner_angle, outer_angle])
                 }
                 LightShape::Point => (0, Vec3::ZERO, [0.0; 2]),
+                LightShape::Area(emitter) if emitter.outline().is_curved() => {
+                    let [half_x, half_y] = emitter.half_axes();
+                    // A disc's half axes are its normal's, and a sphere has none.
+                    let along = if emitter.is_solid() { half_x } else { half_x.cross(half_y) };
+                    (light.kind() as u64, along, [emitter.radius_m(), 0.0])
+                }
                 LightShape::Area(_) => (2, Vec3::ZERO, [0.0; 2]),
                 LightShape::Vpl { normal, min_distance_m } => (4, normal, [min_distance_m, 0.0]),
             };

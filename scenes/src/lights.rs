@@ -267,6 +267,23 @@ mod tests {
         assert!(lit.clone().all(|l| (l.diffuse_range_m() / l.range_m - 0.6).abs() < 1e-6));
     }
 
+    #[test]
+    fn curved_emitters_are_sound_and_of_the_stated_kind() {
+        let spec = LightSpec { area_share: 1.0, spot_share: 0.0, ..spec(5_000) };
+        let kinds = |outlines| {
+            let lights = scatter_lights(&LightSpec { outlines, ..spec }).expect("valid");
+            lights.iter().for_each(|light| light.check().expect("usable"));
+            let count = |kind| lights.iter().filter(|l| l.kind() == kind).count();
+            [LightKind::Rectangle, LightKind::Polygon, LightKind::Disc, LightKind::Sphere]
+                .map(count)
+        };
+        assert_eq!(kinds(Outlines::Discs), [0, 0, 5_000, 0]);
+        assert_eq!(kinds(Outlines::Spheres), [0, 0, 0, 5_000]);
+        assert_eq!(kinds(Outlines::Lines), [0; 4]);
+        // Five standard deviations of a fifth.
+        assert!(kinds(Outlines::All).iter().all(|count| (858..1_142).contains(count)));
+    }
+
     /// The values drawn are fixed: with another generator, results could not be compared.
     #[test]
     fn draws_are_pinned() {

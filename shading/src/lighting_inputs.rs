@@ -27,8 +27,10 @@ pub struct LightingRecord {
     pub random_threshold: f32,
     /// [`LightingOptions::specular_reach`]; 1 if it is off.
     pub specular_reach: f32,
+    /// [`LightingOptions::area_lod`]; 0 if it is off.
+    pub area_lod: f32,
     /// Pads to 32 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// Binding of `Suns` in group 2.
@@ -117,6 +119,7 @@ impl LightingInputs {
         let shadows = bound_maps(options, maps)?;
         let uniform = gpu.uniform("lighting", size_of::<LightingRecord>() as u64);
         options.area.check()?;
+        options.check_area_lod()?;
         let area_samples = options.area.samples();
         let record = LightingRecord {
             exit_weight: options.exit_weight,
@@ -124,7 +127,8 @@ impl LightingInputs {
             applicable_lights: options.compensation.unwrap_or(0.0),
             random_threshold: options.stochastic.unwrap_or(0.0),
             specular_reach: options.specular_reach.unwrap_or(1.0),
-            padding: [0; 3],
+            area_lod: options.area_lod.unwrap_or(0.0),
+            padding: [0; 2],
         };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
         let table = match options.area.table().filter(|_| options.kinds.areas) {

@@ -1,6 +1,6 @@
 //! How lights are evaluated: the options of a lighting pass.
 
-use assign::{LightKinds, Shader, Suns};
+use assign::{AssignError, LightKinds, Shader, Suns};
 use serde::{Deserialize, Serialize};
 
 use crate::{AreaModel, ShadowModel};
@@ -37,6 +37,10 @@ pub struct LightingOptions {
     /// to the eye. A strategy must [list lights as far](assign::Assignment::specular_reach). Off (`None`), it ends with
     /// the diffuse term, and nothing is compiled for it.
     pub specular_reach: Option<f32>,
+    /// The solid angle, steradians, below which an area light is a point of the same flux: above 0 and at most 2 pi.
+    /// On a surface of a GGX alpha below 1/2, it shrinks by 4 alpha^2. **Lossy**: the smaller the solid angle, the
+    /// smaller the error (METHODOLOGY has figures). Off (`None`), nothing is compiled for it.
+    pub area_lod: Option<f32>,
     /// Suns light every sample in addition to its list. Without suns, none of their code is
     /// compiled and nothing is bound for them.
     pub suns: Suns,
@@ -83,6 +87,20 @@ impl LightingOptions {
         }
     }
 
+    /// Checks the solid angle below which area lights are points.
+    pub(crate) fn check_area_lod(&self) -> Result<(), AssignError> {
+        match self.area_lod {
+            Some(angle) if !(angle > 0.0 && angle <= std::f32::consts::TAU) => {
+                Err(AssignError::Parameter {
+                    field: "area light LOD".into(),
+                    value: format!("{angle} steradians"),
+                    accepted: "above 0 and at most 2 pi".into(),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Sets the shader flags that these options need.
     pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
         let shader = shader
@@ -92,6 +110,7 @@ impl LightingOptions {
             .flag("compensation", self.compensation.is_some())
             .flag("stochastic", self.stochastic.is_some())
             .flag("specular_reach", self.specular_reach.is_some())
+            .flag("area_lod", self.kinds.areas && self.area_lod.is_some())
             .flag("suns", !self.suns.is_empty())
             .flag("shadows", self.shadows.is_on());
         let flags = self.area.flags().iter();

@@ -22,9 +22,13 @@ pub(crate) struct LightTotals {
 /// `area_mrp_published.wesl`.
 const PUBLISHED_ROUNDS: u64 = 5 + 4 * 3;
 
+/// `CORNERS` of `area_curved.wesl`.
+const CURVED_VERTICES: u64 = 16;
+
 impl LightTotals {
     pub(crate) fn new(lights: &[Light]) -> Self {
         let areas = lights.iter().filter_map(|light| match &light.shape {
+            LightShape::Area(emitter) if emitter.outline().is_curved() => Some(CURVED_VERTICES),
             LightShape::Area(emitter) => Some(emitter.vertices().len() as u64),
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
         });
@@ -51,7 +55,8 @@ impl LightTotals {
     /// As many lights of the kind that takes the most rounds.
     fn unknown(kinds: LightKinds, count: u64) -> Self {
         let areas = if kinds.areas { count } else { 0 };
-        Self { kinds, count, areas, vertices: areas * MAX_VERTICES as u64 }
+        let most = if kinds.curved { CURVED_VERTICES } else { MAX_VERTICES as u64 };
+        Self { kinds, count, areas, vertices: areas * most }
     }
 
     /// The rounds of lighting a sample by all of the lights. A light takes one round. An area light
@@ -160,7 +165,7 @@ mod tests {
                 count: &count,
                 count_offset: 0,
                 capacity: 7,
-                kinds: LightKinds { spots: true, areas },
+                kinds: LightKinds { spots: true, areas, curved: false },
                 bounds: (Vec3::ZERO, Vec3::ONE),
                 radius_max_m: 1.0,
                 step_max_m: None,

@@ -2,6 +2,7 @@
 
 mod area;
 mod brdf;
+mod outline;
 
 use area::SeenArea;
 use assign::{Light, LightShape, MIN_DISTANCE_2, Sun, fall_off, specular_reach};

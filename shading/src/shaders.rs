@@ -30,6 +30,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "specular_reach",
         "suns",
         "shadows",
+        "area_lod",
         "area_point",
         "area_mrp",
         "area_mrp_published",
@@ -60,7 +61,9 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
     let shader = Shader::new(lists_group)
         .module("package::brdf", include_str!("shaders/brdf.wesl"))
         .module("package::area", include_str!("shaders/area.wesl"))
+        .module("package::area_curved", include_str!("shaders/area_curved.wesl"))
         .module("package::area_point", include_str!("shaders/area_point.wesl"))
+        .module("package::area_lod", include_str!("shaders/area_lod.wesl"))
         .module("package::area_mrp", include_str!("shaders/area_mrp.wesl"))
         .module("package::area_mrp_published", include_str!("shaders/area_mrp_published.wesl"))
         .module("package::solid_angle", include_str!("shaders/solid_angle.wesl"))
@@ -69,6 +72,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::area_monte_carlo", include_str!("shaders/area_monte_carlo.wesl"))
         .module("package::lighting_uniform", include_str!("shaders/lighting_uniform.wesl"))
         .module("package::area_ltc", include_str!("shaders/area_ltc.wesl"))
+        .module("package::area_ltc_curved", include_str!("shaders/area_ltc_curved.wesl"))
         .module("package::ltc_table", include_str!("shaders/ltc_table.wesl"))
         .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
         .module("package::suns", include_str!("shaders/suns.wesl"))

@@ -5,8 +5,10 @@
 mod common;
 
 use assign::{Emitter, Light, LightBuffer, LightShape};
-use common::areas::{asked, direction, error_of, light_of, lights, queries, truth_of};
-use common::evaluate::{Query, evaluate};
+use common::areas::{
+    asked, curved_lights, direction, error_of, light_of, lights, queries, truth_of,
+};
+use common::evaluate::{Query, evaluate, evaluate_far};
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -17,11 +19,20 @@ use shading::reference::{light_contribution, ltc_contribution};
 #[test]
 fn linearly_transformed_cosines_match_f64() {
     let gpu = common::gpu();
-    let lights = lights(40);
-    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
-    let queries = queries(&lights, 6_000);
+    for lights in [lights(40), curved_lights(60), [lights(10), curved_lights(10)].concat()] {
+        match_f64(&gpu, &lights);
+    }
+}
+
+fn is_curved(light: &Light) -> bool {
+    matches!(&light.shape, LightShape::Area(emitter) if emitter.outline().is_curved())
+}
+
+fn match_f64(gpu: &assign::Gpu, lights: &[Light]) {
+    let buffer = LightBuffer::new(gpu, lights).unwrap();
+    let queries = queries(lights, 6_000);
     let table = Table::ggx().unwrap();
-    let answers = evaluate(&gpu, &buffer, &queries, AreaModel::LtcTable);
+    let answers = evaluate(gpu, &buffer, &queries, AreaModel::LtcTable);
     let (mut lit, mut worst) = (0, 0.0_f64);
     for (query, answer) in queries.iter().zip(&answers) {
         let (position, surface, to_eye) = asked(query);
@@ -29,7 +40,9 @@ fn linearly_transformed_cosines_match_f64() {
         let expected = ltc_contribution(&table, light, position, &surface, to_eye);
         let off = (f64::from(answer[0]) - expected.x).abs() / (expected.x.abs() + 1e-3);
         worst = worst.max(off);
-        assert!(off < 2e-3, "{answer:?}, expected {expected}: {query:?}");
+        // An ellipse's cone is the root of a cubic, which single precision finds less exactly.
+        let most = if lights.iter().any(is_curved) { 6e-3 } else { 2e-3 };
+        assert!(off < most, "{answer:?}, expected {expected}: {query:?} {light:?}");
         lit += usize::from(expected.x > 1e-4);
     }
     println!("{}: {lit} lit, off by {worst:.1e} at most", gpu.info.name);
@@ -55,13 +68,64 @@ fn each_model_has_its_expected_error() {
     assert!(point > 4.0 * table, "{point} {table}");
 }
 
+/// The same for discs, spheres and lines, kind by kind.
+#[test]
+fn each_model_has_its_expected_error_for_curved_emitters() {
+    let gpu = common::gpu();
+    for kind in 0..3 {
+        let lights: Vec<Light> = curved_lights(60).into_iter().skip(kind).step_by(3).collect();
+        let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+        let mut queries = queries(&lights, 600);
+        queries.iter_mut().for_each(|query| query[1][3] = 0.2 + 0.8 * query[1][3]);
+        let truth = truth_of(&buffer, &queries);
+        let error = |model| error_of(&evaluate(&gpu, &buffer, &queries, model), &truth);
+        let [point, mrp, table] =
+            [AreaModel::Point, AreaModel::Mrp, AreaModel::LtcTable].map(error);
+        let kind = lights[0].kind();
+        println!("{kind:?}: point {point:.4}, MRP {mrp:.4}, table {table:.4}");
+        assert!(
+            table < 0.1 && mrp < 1.3 * point && 2.0 * table < mrp,
+            "{kind:?}: {point} {mrp} {table}"
+        );
+    }
+}
+
+/// Points for lights that look small: the smaller the solid angle, the smaller the error, and nothing changes where no
+/// light looks that small.
+#[test]
+fn far_area_lights_are_points_where_the_error_allows() {
+    let gpu = common::gpu();
+    for lights in [lights(40), curved_lights(60)] {
+        let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+        let queries = queries(&lights, 4_000);
+        let whole = evaluate(&gpu, &buffer, &queries, AreaModel::LtcTable);
+        let sum: f64 = whole.iter().map(|answer| f64::from(answer[0])).sum();
+        let errors = [1e-9, 0.003, 0.03, 0.3, 3.0].map(|angle| {
+            let far = evaluate_far(&gpu, &buffer, &queries, AreaModel::LtcTable, Some(angle));
+            let off = |(a, b): (&[f32; 4], &[f32; 4])| f64::from((a[0] - b[0]).abs());
+            far.iter().zip(&whole).map(off).sum::<f64>() / sum
+        });
+        println!("errors by solid angle: {errors:.5?}");
+        assert!(errors[0] == 0.0 && errors[1] > 0.0 && errors[2] < 0.01, "{errors:?}");
+        assert!(errors.windows(2).all(|two| two[0] < two[1]), "{errors:?}");
+    }
+}
+
 /// Four times as many independent samples halve the error. Evenly spread samples do better.
 #[test]
 fn sampling_converges_to_the_truth() {
+    sampling_converges(&lights(40), 1_500);
+}
+
+#[test]
+fn sampling_of_curved_emitters_converges_to_the_truth() {
+    sampling_converges(&curved_lights(60), 600);
+}
+
+fn sampling_converges(lights: &[Light], count: usize) {
     let gpu = common::gpu();
-    let lights = lights(40);
-    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
-    let mut queries = queries(&lights, 1_500);
+    let buffer = LightBuffer::new(&gpu, lights).unwrap();
+    let mut queries = queries(lights, count);
     queries.iter_mut().for_each(|query| query[1][3] = 0.4 + 0.6 * query[1][3]);
     let truth = truth_of(&buffer, &queries);
     let counts = [4, 16, 64, 256, 1024];

@@ -7,7 +7,7 @@ use assign::{
 };
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use glam::{Vec3, Vec4};
-use scenes::{Aabb, LightSpec, Motion, MotionLaw, scatter_lights};
+use scenes::{Aabb, LightSpec, Motion, MotionLaw, Outlines, scatter_lights};
 use shading::MovingLights;
 
 const TIMES: [f32; 4] = [0.0, 0.5, 3.25, 1000.75];
@@ -26,10 +26,12 @@ fn bounds() -> Aabb {
     Aabb::new(Vec3::new(-20.0, -1.0, 3.0), Vec3::new(25.0, 14.0, 33.0))
 }
 
-/// 500 points, spots, rectangles, polygons and virtual point lights. Two are faulty, and one lies
+/// 500 points, spots, emitters of every outline and virtual point lights. Two are faulty, and one lies
 /// outside the box.
 fn lights() -> Vec<Light> {
-    let spec = LightSpec { spot_share: 0.3, area_share: 0.4, ..LightSpec::new(500, bounds()) };
+    let outlines = Outlines::All;
+    let spec =
+        LightSpec { spot_share: 0.3, area_share: 0.4, outlines, ..LightSpec::new(500, bounds()) };
     let mut lights = scatter_lights(&spec).unwrap();
     for light in lights.iter_mut().step_by(10) {
         *light = Light::vpl(light.position, Vec3::Y, light.range_m, light.intensity);
@@ -85,6 +87,8 @@ impl Records {
             0
         } else if kind == LightKind::Spot as u32 || kind == LightKind::Vpl as u32 {
             2
+        } else if kind >= LightKind::Disc as u32 {
+            4
         } else {
             4 + self.shapes[first + 2].w.abs() as usize
         };

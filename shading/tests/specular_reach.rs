@@ -99,7 +99,7 @@ fn lights() -> Vec<Light> {
 }
 
 fn options(reach: Option<f32>) -> LightingOptions {
-    let kinds = assign::LightKinds { spots: true, areas: false };
+    let kinds = assign::LightKinds { spots: true, ..Default::default() };
     LightingOptions { kinds, specular_reach: reach, ..LightingOptions::default() }
 }
 

@@ -173,7 +173,7 @@ impl VplBuffer {
             count: &self.counts,
             count_offset: offset_of!(VplCounts, kept) as u64,
             capacity: self.capacity,
-            kinds: LightKinds { spots: true, areas: false },
+            kinds: LightKinds { spots: true, ..LightKinds::default() },
             bounds,
             radius_max_m: self.settings.max_range_m,
             step_max_m: None,

@@ -59,7 +59,7 @@ impl Feed {
             count: &self.count,
             count_offset: COUNT_OFFSET,
             capacity: self.capacity,
-            kinds: LightKinds { spots: true, areas: true },
+            kinds: LightKinds::EVERY,
             bounds: self.bounds,
             radius_max_m: self.radius_max_m,
             step_max_m: None,

@@ -15,7 +15,7 @@ pub(super) enum Kinds {
     Spots(f64, f64),
     /// Rectangles and polygons of every size, one- and two-sided.
     Areas,
-    /// All kinds, with all half angles.
+    /// All kinds, with all half angles; half of the emitters are discs, spheres and lines.
     Mixed,
 }
 
@@ -103,6 +103,7 @@ fn at_sample(rng: &mut Rng, stage: &Stage, range_m: (f64, f64), kinds: Kinds, sh
             0 => light,
             3 => half(rng, light, point),
             1 => aimed(rng, light, point, 0.02, std::f64::consts::PI),
+            _ if rng.below(2) == 0 => curved(rng, light, point),
             _ => spread(rng, light, point),
         },
     }
@@ -154,6 +155,37 @@ fn spread(rng: &mut Rng, light: Light, point: DVec3) -> Light {
     let spread = Light::area(emitter, position, light.range_m, light.intensity);
     // Far from the origin, rounding bends the smallest emitters.
     if spread.check().is_ok() { spread } else { light }
+}
+
+/// Turns a light into a disc, a sphere or a line whose closest point to `point` is the light's position, or nearly
+/// for a disc.
+fn curved(rng: &mut Rng, light: Light, point: DVec3) -> Light {
+    let surface = light.position.as_dvec3();
+    let away = (surface - point).normalize_or(DVec3::Y);
+    let size = f64::from(light.range_m) * rng.log_range(0.01, 3.0);
+    let size = size.clamp(2e-4, 1e4);
+    let across = away.cross(rng.direction()).normalize_or(away.any_orthonormal_vector());
+    let (emitter, position) = match rng.below(3) {
+        0 => {
+            // Faces the point, or is seen almost edge-on.
+            let turn = [0.0, rng.range(0.0, 1.5)][rng.below(2)];
+            let normal = -away * f64::cos(turn) + across * f64::sin(turn);
+            let inward = (away + normal * normal.dot(-away)).normalize_or(across);
+            let disc = Emitter::disc(normal.as_vec3(), size as f32);
+            let disc = if rng.below(3) == 0 { disc.two_sided() } else { disc };
+            (disc, surface + inward * size * if turn == 0.0 { rng.range(0.0, 1.0) } else { 1.0 })
+        }
+        1 => (Emitter::sphere(size as f32), surface + away * size),
+        _ => {
+            let radius = size * rng.log_range(0.01, 1.0);
+            let axis = (across + away * rng.range(0.0, 1.0)).normalize();
+            let nearest = surface + away * radius;
+            (Emitter::line((axis * size).as_vec3(), radius as f32), nearest + axis * size)
+        }
+    };
+    let emitter = emitter.with_diffuse_share([1.0, rng.range(0.2, 1.0)][rng.below(2)] as f32);
+    let curved = Light::area(emitter, position.as_vec3(), light.range_m, light.intensity);
+    if curved.check().is_ok() { curved } else { light }
 }
 
 /// Turns a light into a spot whose cone contains `point`. Half of the cones barely do.
@@ -223,6 +255,9 @@ pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
         vpl(Vec3::Y, f32::NAN),
         Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::ZERO)), ..sound },
         Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::X)), ..sound },
+        Light { shape: LightShape::Area(Emitter::disc(Vec3::ZERO, 1.0)), ..sound },
+        Light { shape: LightShape::Area(Emitter::sphere(-1.0)), ..sound },
+        Light { shape: LightShape::Area(Emitter::line(Vec3::X, f32::NAN)), ..sound },
         Light {
             shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::Y).with_diffuse_share(2.0)),
             ..sound

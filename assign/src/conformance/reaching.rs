@@ -157,6 +157,7 @@ fn reach_sample(
 /// vertex.
 fn outer_radius(light: &Light) -> f64 {
     let extent = match &light.shape {
+        LightShape::Area(emitter) if emitter.outline().is_curved() => f64::from(emitter.radius()),
         LightShape::Area(emitter) => {
             let vertices = emitter.vertices().iter().map(|v| v.as_dvec3().length());
             vertices.fold(0.0, f64::max)

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Emitter, FLATNESS};
+use super::{Emitter, FLATNESS, Outline};
 use crate::light_fault::LightFault;
 
 /// The accepted distances of an emitter's farthest vertex from its centre, metres.
@@ -15,6 +15,16 @@ const MIN_AREA_SHARE: f32 = 1e-4;
 /// The largest cosine between the half axes.
 const MAX_COSINE: f32 = 1e-3;
 
+/// The largest cosine between the half axes of a disc.
+const MAX_DISC_COSINE: f64 = 1e-5;
+
+/// The longest half axis of a disc over its radius.
+const MAX_DISC_AXIS: f64 = 1.0001;
+
+/// The smallest ratio of a line's radius to its size, and of its length to its radius.
+const MIN_LINE_RADIUS: f32 = 1e-4;
+const MIN_LINE_LENGTH: f32 = 1e-3;
+
 /// How far rounding may move a vertex beyond the half axes, as a share of the emitter's size.
 const OUTLINE_ROUNDING: f32 = 1e-6;
 
@@ -25,6 +35,10 @@ fn out(field: &'static str, value: f32, accepted: &'static str) -> Result<(), Li
 impl Emitter {
     /// Checks every field.
     pub(crate) fn check(&self) -> Result<(), LightFault> {
+        if self.outline().is_curved() {
+            self.check_curved()?;
+            return self.check_diffuse_share();
+        }
         let numbers = self.vertices().iter().flat_map(Vec3::to_array);
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
             return Err(LightFault::NotFinite { field: "emitter vertex", value });
@@ -60,8 +74,52 @@ impl Emitter {
             return out("turns of the emitter's outline", turns, "1");
         }
         self.check_half_axes(normal, size)?;
+        self.check_diffuse_share()
+    }
+
+    fn check_diffuse_share(&self) -> Result<(), LightFault> {
         if !(self.diffuse_share > 0.0 && self.diffuse_share <= 1.0) {
             return out("diffuse share", self.diffuse_share, "above 0 and at most 1");
+        }
+        Ok(())
+    }
+
+    /// Checks a disc, a sphere or a line.
+    fn check_curved(&self) -> Result<(), LightFault> {
+        let radius = self.radius_m();
+        let axes = self.half_axes().map(Vec3::as_dvec3);
+        let numbers = axes.iter().flat_map(|axis| axis.as_vec3().to_array()).chain([radius]);
+        if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
+            return Err(LightFault::NotFinite { field: "emitter radius or half axis", value });
+        }
+        let half = axes[0].length() as f32;
+        let size = if self.outline() == Outline::Line { half + radius } else { radius };
+        if !(MIN_SIZE_M..=MAX_SIZE_M).contains(&size) {
+            return out("emitter size", size, "between 1e-4 and 1e5 metres from its middle");
+        }
+        match self.outline() {
+            Outline::Line => {
+                if radius < MIN_LINE_RADIUS * size {
+                    return out("line radius over size", radius / size, "at least 1e-4");
+                }
+                if half < MIN_LINE_LENGTH * radius {
+                    return out("half line over radius", half / radius, "at least 1e-3");
+                }
+            }
+            Outline::Disc => {
+                for axis in axes {
+                    let share = axis.length() / f64::from(radius);
+                    if !(1.0..=MAX_DISC_AXIS).contains(&share) {
+                        let accepted = "1, with a normal of some length";
+                        return out("half axis of a disc over radius", share as f32, accepted);
+                    }
+                }
+                let cosine = axes[0].dot(axes[1]) / (axes[0].length() * axes[1].length());
+                if cosine.abs() > MAX_DISC_COSINE {
+                    return out("cosine between half axes", cosine as f32, "0: a right angle");
+                }
+            }
+            _ => {}
         }
         Ok(())
     }
@@ -142,10 +200,26 @@ mod tests {
         let shear = glam::Mat3::from_cols(Vec3::X, Vec3::new(0.5, 1.0, 0.0), Vec3::Z);
         let sheared = triangle.turned(&shear);
         assert!(fault(sheared).contains("right angle"), "{}", fault(sheared));
+        for (emitter, fault_of_curved) in [
+            (Emitter::disc(Vec3::ZERO, 1.0), "half axis of a disc over radius is 0"),
+            (Emitter::disc(Vec3::X, 0.0), "emitter size is 0"),
+            (Emitter::disc(Vec3::X, -1.0), "emitter size is -1"),
+            (Emitter::disc(Vec3::X, 1.0).turned(&shear), "half axis of a disc"),
+            (Emitter::sphere(f32::NAN), "is NaN"),
+            (Emitter::sphere(1e9), "emitter size"),
+            (Emitter::sphere(1.0).with_diffuse_share(2.0), "diffuse share is 2"),
+            (Emitter::line(Vec3::ZERO, 1.0), "half line over radius is 0"),
+            (Emitter::line(Vec3::X, 1e-5), "line radius over size"),
+            (Emitter::line(Vec3::X, -0.5), "line radius over size"),
+            (Emitter::line(Vec3::INFINITY, 1.0), "must be finite"),
+        ] {
+            let fault = fault(emitter);
+            assert!(fault.contains(fault_of_curved), "{fault}");
+        }
         // Only records may have other half axes.
         let [x, y] = triangle.half_axes();
         let parts =
-            |axes| Emitter::from_parts(Outline::Polygon, axes, triangle.vertices()).unwrap();
+            |axes| Emitter::from_parts(Outline::Polygon, axes, 0.0, triangle.vertices()).unwrap();
         parts([x, y]).check().unwrap();
         for (axes, fault_of_axes) in [
             ([0.99 * x, y], "beyond the half axes"),

@@ -89,9 +89,13 @@ impl SeenGroup {
         let ratio_2 = nearest * nearest / (volume.range_m * volume.range_m);
         let window = (1.0 - ratio_2 * ratio_2).max(0.0);
         let scale = light.intensity.max_element() / area_m2 * window * window * self.visibility;
-        let whole = self.reflected_of(&volume, area_m2, nearest, slack_m);
-
         let [x, y] = volume.half_axes;
+        // A line's surface is curved towards the sample. At most half of it is visible, less than
+        // twice its area.
+        let is_line = volume.thick_m > 0.0 && x != Vec3::ZERO;
+        let seen_m2 = if is_line { 2.0 * area_m2 } else { area_m2 };
+        let whole = self.reflected_of(&volume, seen_m2, nearest, slack_m);
+
         let [long, short] = if x.length_squared() >= y.length_squared() { [x, y] } else { [y, x] };
         let count = pieces_of(long.length_squared(), short.length_squared());
         if count == 1 {
@@ -100,7 +104,12 @@ impl SeenGroup {
         let pieces = count as f32;
         // A polygon may fill its rectangle unevenly, but never fills a piece by more than the
         // piece's area.
-        let piece_m2 = area_m2.min(4.0 * OFF_SQUARE * long.length() * short.length() / pieces);
+        let piece_m2 = if is_line {
+            // A piece at the end of a line has its round end, too.
+            seen_m2.min(seen_m2 / pieces + 2.0 * PI * volume.thick_m * volume.thick_m)
+        } else {
+            area_m2.min(4.0 * OFF_SQUARE * long.length() * short.length() / pieces)
+        };
         let sum: f32 = (0..count)
             .map(|ix| {
                 let center = volume.center + ((2 * ix + 1) as f32 / pieces - 1.0) * long;

@@ -6,7 +6,8 @@ use glam::Vec3;
 use crate::{Light, LightShape};
 
 /// The outline extended by a ball of `range_m`, cut by a cone around `axis` if `cos_outer > -1`. An
-/// area light's outline is the rectangle of the half axes; any other light's is a point.
+/// area light's outline is the rectangle of the half axes, extended by a ball of `thick_m`; any other light's is a
+/// point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightVolume {
     /// Position of the light, world space, metres.
@@ -23,6 +24,8 @@ pub struct LightVolume {
     pub sin_outer: f32,
     /// Half axes of the outline, metres; zero for a point.
     pub half_axes: [Vec3; 2],
+    /// Radius of a sphere or a line, metres; 0 for other lights.
+    pub thick_m: f32,
 }
 
 impl From<&Light> for LightVolume {
@@ -35,6 +38,7 @@ impl From<&Light> for LightVolume {
             cos_outer: -1.0,
             sin_outer: 0.0,
             half_axes: [Vec3::ZERO; 2],
+            thick_m: 0.0,
         };
         match &light.shape {
             LightShape::Point => ball,
@@ -48,10 +52,12 @@ impl From<&Light> for LightVolume {
                 Self { axis: normal.normalize(), cos_outer: 0.0, sin_outer: 1.0, ..ball }
             }
             LightShape::Area(emitter) => {
-                let sheet = Self { axis: emitter.normal(), half_axes: emitter.half_axes(), ..ball };
+                let thick_m = if emitter.is_solid() { emitter.radius_m() } else { 0.0 };
+                let half_axes = emitter.half_axes();
+                let sheet = Self { axis: emitter.normal(), half_axes, thick_m, ..ball };
                 // One-sided: the half ball in front.
                 let half = Self { cos_outer: 0.0, sin_outer: 1.0, ..sheet };
-                if emitter.two_sided { sheet } else { half }
+                if emitter.shines_all_around() { sheet } else { half }
             }
         }
     }
@@ -93,16 +99,16 @@ impl LightVolume {
 
     /// How far the outline extends from the volume's centre along a unit vector, metres.
     pub(super) fn outline_extent(&self, axis: Vec3) -> f32 {
-        self.half_axes[0].dot(axis).abs() + self.half_axes[1].dot(axis).abs()
+        self.half_axes[0].dot(axis).abs() + self.half_axes[1].dot(axis).abs() + self.thick_m
     }
 
-    /// Distance from the volume's centre to the outline's corners, metres.
+    /// Distance from the volume's centre to the outline's farthest points, metres.
     pub(super) fn outline_radius(&self) -> f32 {
         let [x, y] = self.half_axes;
-        (x.length_squared() + y.length_squared()).sqrt()
+        (x.length_squared() + y.length_squared()).sqrt() + self.thick_m
     }
 
-    /// The outline's point closest to `point`, world space.
+    /// The point of the outline, without its thickness, closest to `point`, world space.
     pub(super) fn closest_on_outline(&self, point: Vec3) -> Vec3 {
         let offset = point - self.center;
         let along = |half: Vec3| {

@@ -44,6 +44,9 @@ impl Light {
             LightKind::Rectangle,
             LightKind::Polygon,
             LightKind::Vpl,
+            LightKind::Disc,
+            LightKind::Sphere,
+            LightKind::Line,
         ];
         let kind = kinds.into_iter().find(|&kind| kind as u32 == emission.kind_and_shape >> 28);
         match kind {
@@ -60,23 +63,25 @@ impl Light {
                 let shape = LightShape::Vpl { normal: direction(vector(0)), min_distance_m };
                 light(sphere.radius_m, shape)
             }
-            Some(kind @ (LightKind::Rectangle | LightKind::Polygon)) => {
+            Some(kind) => {
                 let (normal_range, x_diffuse, y_count) = (vector(0), vector(1), vector(2));
                 let range_m = normal_range[3];
-                let outline = if kind == LightKind::Rectangle {
-                    Outline::Rectangle
-                } else {
-                    Outline::Polygon
+                let outline = match kind {
+                    LightKind::Rectangle => Outline::Rectangle,
+                    LightKind::Disc => Outline::Disc,
+                    LightKind::Sphere => Outline::Sphere,
+                    LightKind::Line => Outline::Line,
+                    _ => Outline::Polygon,
                 };
+                let count = if outline.is_curved() { 0.0 } else { y_count[3].abs() };
                 let corners: Vec<Vec3> = (4..)
-                    .take(y_count[3].abs().min(MAX_SHAPES) as usize)
+                    .take(count.min(MAX_SHAPES) as usize)
                     .map(|ix| direction(vector(ix)))
                     .collect();
                 let half_axes = [direction(x_diffuse), direction(y_count)];
-                let Some(mut emitter) = Emitter::from_parts(outline, half_axes, &corners) else {
-                    return EMPTY;
-                };
-                emitter.two_sided = y_count[3] < 0.0;
+                let parts = Emitter::from_parts(outline, half_axes, vector(3)[1], &corners);
+                let Some(mut emitter) = parts else { return EMPTY };
+                emitter.two_sided = y_count[3] < 0.0 && !emitter.is_solid();
                 emitter.diffuse_share = x_diffuse[3] / range_m;
                 light(range_m, LightShape::Area(emitter))
             }

@@ -25,7 +25,9 @@ use crate::{AssignError, Gpu, LightKinds, MAX_RANGE_M, MIN_RANGE_M};
 ///   emitter's squared size for its area. So a direction or normal has the length 1. A spot's sine, cosine and squared chord belong to one angle. A
 ///   virtual point light has the constants of a half space. An area light's ball holds its range
 ///   around its vertices, its half axes hold its vertices, a rectangle's vertices are its corners,
-///   and its normal and area are those of its vertices.
+///   and its normal and area are those of its vertices. The half axes of a disc are as long as its
+///   radius, at right angles to each other and to its normal. A sphere has neither half axes nor a
+///   normal, and a line has one half axis. Their areas are those of their radius and length.
 ///
 /// A record does not show everything. These lights have the record of a sound light:
 ///

@@ -31,6 +31,8 @@ pub(crate) enum Kind {
     Spot,
     /// A flat emitter, turned so that its plane lies where the edge of a 90-degree spot would be.
     Area,
+    /// A disc, turned in the same way, a sphere or a line.
+    Curved,
 }
 
 /// The outline of an emitter.
@@ -61,6 +63,20 @@ impl Outline {
             Emitter::polygon(&(0..self.vertices).map(corner).collect::<Vec<_>>()).unwrap()
         };
         (if self.two_sided { emitter.two_sided() } else { emitter }, center)
+    }
+
+    /// A disc that faces along `normal`, a sphere, or a line across `normal`.
+    fn curved(self, normal: DVec3) -> Emitter {
+        match self.vertices % 3 {
+            0 if self.two_sided => Emitter::disc(normal.as_vec3(), self.half_m).two_sided(),
+            0 => Emitter::disc(normal.as_vec3(), self.half_m),
+            1 => Emitter::sphere(self.half_m),
+            _ => {
+                let along = normal.any_orthonormal_vector();
+                let along = DQuat::from_axis_angle(normal, self.turn.into()) * along;
+                Emitter::line(along.as_vec3() * self.half_m, self.half_m * self.aspect)
+            }
+        }
     }
 }
 
@@ -180,6 +196,10 @@ impl Aim {
                 let (emitter, center) = self.outline.emitter(normal);
                 light.shape = LightShape::Area(emitter);
                 light.position += center;
+            }
+            Kind::Curved => {
+                let normal = direction(std::f32::consts::FRAC_PI_2);
+                light.shape = LightShape::Area(self.outline.curved(normal));
             }
         }
         light.range_m = match self.range {

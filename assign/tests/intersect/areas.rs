@@ -14,7 +14,7 @@ proptest! {
     #[test]
     fn a_support_that_contains_a_point_of_the_group_reaches_it(
         group in group(),
-        aims in prop::collection::vec(aim(Kind::Area), 4),
+        aims in prop::collection::vec(prop_oneof![aim(Kind::Area), aim(Kind::Curved)], 4),
     ) {
         let bounds = group.bounds();
         for aim in aims {

@@ -3,7 +3,7 @@
 //! It shares no formula with the code under test. Distances come from triangles, overlaps only from
 //! support points (Gilbert, Johnson and Keerthi 1988).
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Outline};
 use glam::DVec3;
 
 /// Faces of a hexahedron whose corner index has x in bit 0, y in bit 1, depth in bit 2.
@@ -129,6 +129,27 @@ pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
         LightShape::Point => {
             let axis = towards.normalize_or(DVec3::X);
             return [axis, -axis].map(|axis| half(axis, vec![])).to_vec();
+        }
+        LightShape::Area(emitter) if emitter.is_solid() => {
+            let axis = towards.normalize_or(DVec3::X);
+            let end = emitter.half_axes()[0].as_dvec3();
+            let range = range + f64::from(emitter.radius_m());
+            let outline = vec![-end, end];
+            return [axis, -axis]
+                .map(|axis| Wedge { axis, half_angle: FRAC_PI_2, range, outline: outline.clone() })
+                .to_vec();
+        }
+        LightShape::Area(emitter) if emitter.outline() == Outline::Disc => {
+            let front = emitter.normal().as_dvec3();
+            let x = front.any_orthonormal_vector() * f64::from(emitter.radius_m());
+            let y = front.cross(x);
+            let place = |ix: u32| {
+                let (sin, cos) = (TAU * f64::from(ix) / 96.0).sin_cos();
+                x * cos + y * sin
+            };
+            let outline: Vec<DVec3> = (0..96).map(place).collect();
+            let sides = if emitter.two_sided { 2 } else { 1 };
+            return [front, -front][..sides].iter().map(|n| half(*n, outline.clone())).collect();
         }
         LightShape::Area(emitter) => {
             let outline: Vec<DVec3> = emitter.vertices().iter().map(|v| v.as_dvec3()).collect();

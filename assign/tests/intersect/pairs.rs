@@ -1,7 +1,7 @@
 //! Seeded pairs of a small group in view and a light, and the BRDF's integral for them in f64.
 
 use assign::intersect::{Aabb, Gloss, NormalCone};
-use assign::{Emitter, Light, LightShape, View};
+use assign::{Emitter, Light, LightShape, Outline, View};
 use glam::{DVec3, Vec3};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -75,6 +75,53 @@ pub(crate) fn long_pair(rng: &mut Pcg64Mcg, view: View, half_angle: f32) -> Pair
     pair
 }
 
+/// As [`pair`], with a two-sided disc, a sphere or a line.
+pub(crate) fn curved_pair(rng: &mut Pcg64Mcg, view: View, half_angle: f32) -> Pair {
+    let mut pair = pair(rng, view, half_angle);
+    let size = between(rng, 0.05, 1.0);
+    let emitter = match rng.random_range(0..3) {
+        0 => Emitter::disc(direction(rng), size).two_sided(),
+        1 => Emitter::sphere(size),
+        _ => Emitter::line(direction(rng) * size, size * between(rng, 0.02, 0.5)),
+    };
+    pair.light = Light::area(emitter, pair.light.position, 10.0, Vec3::ONE);
+    pair
+}
+
+/// The patches of a curved emitter: their places, outward normals (zero for a disc), and areas.
+fn patches(emitter: &Emitter) -> Vec<(DVec3, DVec3, f64)> {
+    const COUNT: u32 = 600;
+    let radius = f64::from(emitter.radius_m());
+    let axis = match emitter.outline() {
+        Outline::Line => emitter.half_axes()[0].as_dvec3(),
+        _ => DVec3::ZERO,
+    };
+    // A spiral of equal areas: over the disc, or over the sphere pulled apart to a line.
+    let z = if axis == DVec3::ZERO { emitter.normal().as_dvec3() } else { axis.normalize() };
+    let z = if z == DVec3::ZERO { DVec3::Z } else { z };
+    let x = z.any_orthonormal_vector();
+    let y = z.cross(x);
+    let length = 2.0 * (axis.length() + radius);
+    (0..COUNT)
+        .map(|ix| {
+            let share = (f64::from(ix) + 0.5) / f64::from(COUNT);
+            let (sin, cos) = (f64::from(ix) * 2.399_963_229_728_653).sin_cos();
+            let around = x * cos + y * sin;
+            if emitter.outline() == Outline::Disc {
+                let area = f64::from(emitter.area()) / f64::from(COUNT);
+                return (around * (radius * share.sqrt()), DVec3::ZERO, area);
+            }
+            // Archimedes: equal heights of a sphere have equal areas, those of its cylinder.
+            let height = (share - 0.5) * length;
+            let on_core = height.clamp(-axis.length(), axis.length());
+            let up = (height - on_core) / radius;
+            let normal = around * (1.0 - up * up).max(0.0).sqrt() + z * up;
+            let area = std::f64::consts::TAU * radius * length / f64::from(COUNT);
+            (z * on_core + normal * radius, normal, area)
+        })
+        .collect()
+}
+
 impl Pair {
     fn emitter(&self) -> Emitter {
         match self.light.shape {
@@ -96,7 +143,15 @@ impl Pair {
         let [half_x, half_y] = self.emitter().half_axes().map(Vec3::as_dvec3);
         let along = Vec3::from_array(rng.random::<[f32; 3]>()).as_dvec3() * 2.0 - 1.0;
         let along = if rng.random::<bool>() { along.signum() } else { along };
-        let point = self.light.position.as_dvec3() + half_x * along.x + half_y * along.y;
+        let mut point = self.light.position.as_dvec3() + half_x * along.x + half_y * along.y;
+        if self.emitter().outline().is_curved() {
+            // The highest point over the sample's surface, or any.
+            let patches = patches(&self.emitter());
+            let highest = patches.iter().max_by(|a, b| a.0.dot(normal).total_cmp(&b.0.dot(normal)));
+            let any = patches.get(rng.random_range(0..patches.len()));
+            let offset = if rng.random::<bool>() { highest } else { any };
+            point = self.light.position.as_dvec3() + offset.map_or(DVec3::ZERO, |patch| patch.0);
+        }
         Sample { position: low + (high - low) * share, normal, point }
     }
 
@@ -106,6 +161,9 @@ impl Pair {
     /// by its own error.
     pub(crate) fn specular(&self, sample: &Sample, roughness: f64, cells: u32) -> f64 {
         let emitter = self.emitter();
+        if emitter.outline().is_curved() {
+            return self.specular_of_patches(sample, roughness);
+        }
         let [x, y] = emitter.half_axes().map(Vec3::as_dvec3);
         let [long, short] = if x.length() >= y.length() { [x, y] } else { [y, x] };
         let area = f64::from(emitter.area());
@@ -120,6 +178,35 @@ impl Pair {
             solid_angle += part;
             sum += part * self.reflected(sample, to_light, roughness);
         }
+        self.windowed(sample, sum, solid_angle)
+    }
+
+    /// The same for a curved emitter, over its patches.
+    fn specular_of_patches(&self, sample: &Sample, roughness: f64) -> f64 {
+        let offset = sample.position - self.light.position.as_dvec3();
+        let is_inside = self.emitter().in_front(offset) <= 0.0;
+        if is_inside && self.emitter().is_solid() {
+            return 0.0;
+        }
+        let (mut sum, mut solid_angle) = (0.0, 0.0);
+        for (place, normal, area) in patches(&self.emitter()) {
+            let across = place - offset;
+            let to_light = across.normalize();
+            let facing = match self.emitter().outline() {
+                Outline::Disc => self.emitter().normal().as_dvec3().dot(to_light).abs(),
+                _ => -normal.dot(to_light),
+            };
+            let part = area * facing.max(0.0) / across.length_squared();
+            solid_angle += part;
+            sum += part * self.reflected(sample, to_light, roughness);
+        }
+        self.windowed(sample, sum, solid_angle)
+    }
+
+    /// Radiance of a sum over cells, with its window.
+    fn windowed(&self, sample: &Sample, sum: f64, solid_angle: f64) -> f64 {
+        let emitter = self.emitter();
+        let area = f64::from(emitter.area());
         // However coarse the cells, the solid angle is at most a hemisphere.
         let most = (std::f64::consts::TAU / solid_angle).min(1.0);
         let offset = sample.position - self.light.position.as_dvec3();

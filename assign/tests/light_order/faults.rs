@@ -11,7 +11,8 @@ use assign::{
 use glam::{Mat3, Quat, Vec3};
 
 use crate::records::{
-    Record, area, contradictions, corner, faulty, hidden, regular, ring, sound, spot, square, vpl,
+    Record, area, contradictions, corner, disc, faulty, hidden, regular, ring, sound, spot, square,
+    vpl,
 };
 
 /// The stated largest radius, metres.
@@ -43,7 +44,7 @@ fn accepted(gpu: &Gpu, records: &[Record]) -> Vec<bool> {
         count: &own[3],
         count_offset: 0,
         capacity: count,
-        kinds: LightKinds { spots: true, areas: true },
+        kinds: LightKinds::EVERY,
         bounds: (Vec3::new(0.0, -1.0, -1.0), Vec3::new(count as f32, 1.0, 1.0)),
         radius_max_m: RADIUS_MAX_M,
         step_max_m: None,
@@ -110,7 +111,7 @@ fn records_that_contradict_themselves_are_faulty() {
         expect(&gpu, &[("a loose polygon".to_owned(), ring(count))], true);
     }
     // Records whose last shape vector is missing: nothing may follow them.
-    let lights = [spot(Vec3::X, 0.3, 0.5), vpl(Vec3::X, 0.3), square(), regular(6)];
+    let lights = [spot(Vec3::X, 0.3, 0.5), vpl(Vec3::X, 0.3), square(), regular(6), disc(0.3)];
     let whole = lights.iter().map(Record::new).chain([corner()]);
     for whole in whole {
         expect(&gpu, &[("whole".to_owned(), whole.clone())], true);
@@ -130,7 +131,7 @@ fn random_area_lights_are_sound() {
     };
     let mut lights = Vec::new();
     while lights.len() < 600 {
-        let size = 10_f32.powf(-3.9 + 8.8 * random());
+        let size = 10_f32.powf(-3.9 + 8.5 * random());
         let narrow = 10_f32.powf(-4.0 * random());
         let axis = Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5).normalize_or(Vec3::Z);
         let rotation = Quat::from_axis_angle(axis, TAU * random());
@@ -141,8 +142,10 @@ fn random_area_lights_are_sound() {
             let (sin, cos) = (TAU * (ix as f32 + 0.3) / count as f32).sin_cos();
             middle + x * cos + y * sin
         };
-        let made = match lights.len() % 2 {
+        let made = match lights.len() % 5 {
             0 => Ok(Emitter::rectangle(x, y)),
+            1 => Ok(Emitter::disc(x, size)),
+            2 => Ok(Emitter::line(x, narrow * size)),
             _ => Emitter::polygon(&(0..count).map(vertex).collect::<Vec<_>>()).map(|(p, _)| p),
         };
         let Ok(mut emitter) = made else { continue };

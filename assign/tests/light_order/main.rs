@@ -43,11 +43,14 @@ fn mixed(count: u32, seed: u32) -> Vec<Light> {
         let area = |emitter: Emitter| {
             LightShape::Area(if ix % 3 == 0 { emitter.two_sided() } else { emitter })
         };
-        let shape = match ix % 5 {
+        let shape = match ix % 8 {
             0 => LightShape::Point,
             1 => LightShape::Spot { direction, inner_angle: 0.5 * outer_angle, outer_angle },
             2 => LightShape::Vpl { normal: direction, min_distance_m: 0.1 },
             3 => area(Emitter::rectangle(rotation * Vec3::X * size, rotation * Vec3::Y * 0.3)),
+            4 => area(Emitter::disc(direction, size)),
+            5 => area(Emitter::sphere(size)),
+            6 => area(Emitter::line(direction * size, 0.05)),
             _ => {
                 let count = 3 + ix % 8;
                 let vertex = |vertex: usize| {

@@ -135,7 +135,7 @@ fn shapes_are_read_back_only_with_the_usage_for_it() {
     let buffer = LightBuffer::from_gpu(&gpu, &points, 1).unwrap();
     record(&gpu, &buffer);
     assert_eq!(buffer.read(&gpu).unwrap().len(), 10);
-    let spots = GpuLights { kinds: LightKinds { spots: true, areas: false }, ..points };
+    let spots = GpuLights { kinds: LightKinds { spots: true, ..LightKinds::default() }, ..points };
     let buffer = LightBuffer::from_gpu(&gpu, &spots, 1).unwrap();
     record(&gpu, &buffer);
     let error = buffer.read(&gpu).unwrap_err().to_string();

@@ -79,14 +79,29 @@ pub(crate) fn square() -> Light {
     rectangle(Vec3::X, Vec3::Y)
 }
 
+pub(crate) fn disc(radius_m: f32) -> Light {
+    area(Emitter::disc(Vec3::new(0.6, 0.0, 0.8), radius_m))
+}
+
+fn sphere(radius_m: f32) -> Light {
+    area(Emitter::sphere(radius_m))
+}
+
+fn line(half_m: f32, radius_m: f32) -> Light {
+    area(Emitter::line(half_m * Vec3::new(0.6, 0.0, 0.8), radius_m))
+}
+
 /// Ranges that every kind of light may have, or may not.
-fn ranged(range_m: f32) -> [Light; 5] {
+fn ranged(range_m: f32) -> [Light; 8] {
     let kinds = [
         Light::point(Vec3::ZERO, 1.0, Vec3::ONE),
         spot(Vec3::X, 0.1, 0.5),
         vpl(Vec3::Y, 0.1),
         square(),
         regular(5),
+        disc(0.3),
+        sphere(0.3),
+        line(0.7, 0.1),
     ];
     kinds.map(|light| Light { range_m, ..light })
 }
@@ -119,7 +134,11 @@ pub(crate) fn sound() -> Vec<Light> {
         // A vertex that is given twice.
         polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
         area(Emitter::rectangle(Vec3::X, Vec3::Y).two_sided()),
+        area(Emitter::disc(Vec3::X, 0.5).two_sided()),
+        line(1.0, 1.1e-4),
+        line(1.1e-3, 1.0),
     ]);
+    lights.extend([1.01e-4, 0.99e5].into_iter().flat_map(|size| [disc(size), sphere(size)]));
     lights
 }
 
@@ -163,9 +182,18 @@ pub(crate) fn faulty() -> Vec<Light> {
         rectangle(Vec3::X, 0.245e-4 * Vec3::Y),
         dented(1.1e-4),
         dented(0.5),
+        area(Emitter::disc(Vec3::ZERO, 1.0)),
+        area(Emitter::disc(Vec3::X, 1.0).with_diffuse_share(2.0)),
+        line(1.0, 0.9e-4),
+        line(0.9e-3, 1.0),
+        line(1.0, -0.1),
+        line(f32::NAN, 0.1),
+        line(1e5, 0.1e5),
         loops(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 2),
         loops(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], 2),
     ]);
+    let sizes = [0.99e-4, 1.01e5, 0.0, -1.0, f32::NAN, f32::INFINITY];
+    lights.extend(sizes.into_iter().flat_map(|size| [disc(size), sphere(size)]));
     lights
 }
 
@@ -218,11 +246,12 @@ pub(crate) fn contradictions() -> Vec<(&'static str, Record)> {
     let square = Record::new(&square());
     let flat = Record::new(&rectangle(2.0 * Vec3::X, Vec3::Y));
     let hexagon = Record::new(&regular(6));
+    let [disc, ball, tube] = [disc(0.3), sphere(0.3), line(0.7, 0.1)].map(|l| Record::new(&l));
     let kind = |kind: u32| point.with(|r| r.emission.kind_and_shape = kind << 28);
     let at = |x: f32, y: f32| square.with(|r| r.sphere.position_world = [x, y, 0.0]);
     let far = |record: &Record| record.with(|r| r.emission.kind_and_shape |= 0x0fff_0000);
     vec![
-        ("kind 5", kind(5)),
+        ("kind 8", kind(8)),
         ("kind 15", kind(15)),
         ("left of the box", at(-0.5, 0.0)),
         ("above the box", at(0.5, 1.5)),
@@ -313,6 +342,27 @@ pub(crate) fn contradictions() -> Vec<(&'static str, Record)> {
             "an outline before the position",
             hexagon.with(|r| r.shapes[4..].iter_mut().for_each(|vertex| vertex[2] += 1.5e-4)),
         ),
+        ("a disc's normal", disc.with(|r| r.shapes[0][0] = -0.6)),
+        (
+            "a disc's half axis that is short",
+            disc.with(|r| r.shapes[1][..3].iter_mut().for_each(|x| *x *= 0.999)),
+        ),
+        (
+            "a disc's half axis that is long",
+            disc.with(|r| r.shapes[2][..3].iter_mut().for_each(|x| *x *= 1.001)),
+        ),
+        ("a disc's area", disc.with(|r| r.shapes[3][0] *= 1.001)),
+        ("a disc of a small radius", disc.with(|r| r.shapes[3][1] *= 0.9)),
+        ("a disc of 4 vertices", disc.with(|r| r.shapes[2][3] = 4.0)),
+        ("a disc's index", far(&disc)),
+        ("a sphere with a half axis", ball.with(|r| r.shapes[1][0] = 0.1)),
+        ("a sphere with a normal", ball.with(|r| r.shapes[0][0] = 1.0)),
+        ("a sphere in a small ball", ball.with(|r| r.sphere.radius_m = 2.2)),
+        ("a one-sided sphere", ball.with(|r| r.shapes[2][3] = 1.0)),
+        ("a sphere's radius is NaN", ball.with(|r| r.shapes[3][1] = f32::NAN)),
+        ("a line of two half axes", tube.with(|r| r.shapes[2][1] = 0.1)),
+        ("a line that is longer than its area", tube.with(|r| r.shapes[1][0] *= 1.01)),
+        ("a line that is thicker than its area", tube.with(|r| r.shapes[3][1] *= 1.01)),
         ("vertices the other way round", hexagon.with(|r| r.shapes[4..].reverse())),
         ("corners in another order", square.with(|r| r.shapes[4..].rotate_left(1))),
     ]

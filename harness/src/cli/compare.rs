@@ -73,6 +73,12 @@ pub struct CompareArgs {
     #[arg(long, value_name = "MODEL", value_parser = values::area_model, help_heading = SHADING, hide_short_help = true)]
     pub area_model: Option<AreaModel>,
 
+    /// Light by a point each area light that looks smaller than X steradians, 1e-9 to 6.28: lossy
+    ///
+    /// On surfaces smoother than a roughness of 0.71 the solid angle shrinks with the specular lobe.
+    #[arg(long, value_name = "X", value_parser = values::number_from(1e-9, 6.28), allow_hyphen_values = true, help_heading = SHADING, hide_short_help = true, conflicts_with = "operations")]
+    pub area_lod: Option<f64>,
+
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed", value_parser = named(CUTS, Cut::name), help_heading = SHADING, hide_short_help = true)]
     pub cut: Cut,

@@ -176,10 +176,14 @@ pub enum LightBox {
     Cylinders,
 }
 
-const OUTLINES: [(Outlines, &str); 3] = [
+const OUTLINES: [(Outlines, &str); 7] = [
     (Outlines::Both, "Half rectangles, half polygons"),
     (Outlines::Rectangles, "Rectangles"),
     (Outlines::Polygons, "Polygons of 3 to 10 vertices"),
+    (Outlines::Discs, "Discs"),
+    (Outlines::Spheres, "Spheres"),
+    (Outlines::Lines, "Lines: tubes that are 10 to 50 times as long as wide"),
+    (Outlines::All, "A fifth each of rectangles, polygons, discs, spheres and lines"),
 ];
 
 const RADII: [(Radii, &str); 3] = [

@@ -137,6 +137,9 @@ fn kind_name(kind: LightKind) -> &'static str {
         LightKind::Rectangle => "rectangle",
         LightKind::Polygon => "polygon",
         LightKind::Vpl => "vpl",
+        LightKind::Disc => "disc",
+        LightKind::Sphere => "sphere",
+        LightKind::Line => "line",
     }
 }
 

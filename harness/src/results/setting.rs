@@ -66,6 +66,9 @@ pub struct Setting {
     /// With `--specular-reach`: the most ranges that a specular term reaches; absent if it ends with the diffuse term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specular_reach: Option<f64>,
+    /// With `--area-lod`: the solid angle below which an area light is a point, steradians; absent without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_lod: Option<f64>,
     /// With `--shadows`: the shadow maps; absent without shadows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadows: Option<ShadowSetting>,

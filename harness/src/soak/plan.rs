@@ -135,6 +135,7 @@ fn stage_words(rng: &mut impl Rng, scene: &str) -> Vec<String> {
         2 => {
             add("--spots", "0.3".to_owned());
             add("--areas", "0.3".to_owned());
+            add("--outlines", "all".to_owned());
         }
         _ => {}
     }

@@ -161,7 +161,7 @@ fn kinds_of_lights_are_compiled_once_and_ahead_if_asked() {
     let order = LightOrder::Gpu { every: 1 };
     let ids = ["SC-E/bvh", "T-E", "G", "HG", "HG/raster", "SC-I/bvh/touched"];
     let default_id = |id: &str| harness::strategy::row(id).map_or(id.to_owned(), Row::default_id);
-    let kinds = [false, true].map(|spots| LightKinds { spots, areas: false });
+    let kinds = [false, true].map(|spots| LightKinds { spots, ..LightKinds::default() });
     for id in ids {
         // Another device: what it compiled before does not count.
         let gpu = Gpu::new(gpu.device.clone(), gpu.queue.clone(), gpu.info.clone());

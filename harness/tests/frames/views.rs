@@ -108,7 +108,7 @@ fn one_instance_prepared_twice_before_a_submission_is_exact() {
 fn lists_of_another_view_are_found() {
     let gpu = Gpu::open(None).expect("an adapter");
     let cameras = Cameras::new(&gpu);
-    assert_eq!(cameras.lights.kinds(), LightKinds { spots: true, areas: false });
+    assert_eq!(cameras.lights.kinds(), LightKinds { spots: true, ..LightKinds::default() });
     let mut one = [crate::stage::contender(&gpu, "SC-E/48x48x40").expect("clusters")];
     let lighting = lighting(&cameras.renderers[0], &cameras.lights, &one[0]);
     cameras.draw(&mut one);

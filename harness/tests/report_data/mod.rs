@@ -65,6 +65,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         setting: Setting {
             compensation: None,
             specular_reach: None,
+            area_lod: None,
             shadows: None,
             scene: "atrium".to_owned(),
             scene_hash: "5f0c1b7e9ad24410".to_owned(),

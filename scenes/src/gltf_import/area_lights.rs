@@ -10,17 +10,20 @@
 //!
 //! | field | meaning | default |
 //! |---|---|---|
-//! | `shape` | `rectangle` or `polygon` | none: required |
+//! | `shape` | `rectangle`, `polygon`, `disc`, `sphere` or `line` | none: required |
 //! | `width`, `height` | size of a rectangle around the node's origin, along its X and Y axes, metres | none: required |
 //! | `vertices` | vertices of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | none: required |
+//! | `radius` | radius of a disc, of a sphere, or of a line with round ends, around the node's origin, metres | none: required |
+//! | `length` | distance between the middles of a line's round ends, along the node's X axis, metres | none: required |
 //! | `color` | linear RGB | white |
-//! | `intensity` | intensity along the normal, in the unit of a punctual light: radiance times area | 1 |
+//! | `intensity` | intensity along the normal, in the unit of a punctual light: radiance times area; a sphere has it in all directions, and a line across its axis | 1 |
 //! | `range` | metres from the closest point of the emitter | as for a punctual light without a range ([`close_ranges`](crate::close_ranges)) |
-//! | `two_sided` | whether it emits from its back too | `false` |
+//! | `two_sided` | whether a flat one emits from its back too | `false` |
 //! | `diffuse_share` | where diffuse light ends, as a share of the range, above 0 and at most 1 | 1 |
 //!
-//! A rectangle emits along the node's -Z axis, like a camera or a spot. The node's scale changes
-//! its size but not its intensity.
+//! A rectangle and a disc emit along the node's -Z axis, like a camera or a spot. The node's scale changes
+//! an emitter's size but not its intensity. A node that stretches a disc, a sphere or a line by different
+//! factors along its axes is an error.
 //!
 //! Rectangles and discs of EXT_lights_area emit along -Z too, but their `intensity` is the
 //! luminance. So the node's scale changes their size and the light that they give.
@@ -45,6 +48,8 @@ struct Json {
     width: Option<f32>,
     height: Option<f32>,
     vertices: Option<Vec<[f32; 3]>>,
+    radius: Option<f32>,
+    length: Option<f32>,
     #[serde(default = "white")]
     color: [f32; 3],
     #[serde(default = "one")]
@@ -61,6 +66,20 @@ struct Json {
 enum Shape {
     Rectangle,
     Polygon,
+    Disc,
+    Sphere,
+    Line,
+}
+
+/// The factor by which a transform stretches all lengths alike; `None` if it stretches some more than others.
+fn even_scale(to_world: Mat4) -> Option<f32> {
+    let [x, y, z] = [0, 1, 2].map(|axis| to_world.col(axis).truncate());
+    let scale = x.length();
+    let slack = 1e-3 * scale;
+    let is_even = (y.length() - scale).abs() <= slack && (z.length() - scale).abs() <= slack;
+    let most = slack * scale;
+    let is_square = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs()) <= most;
+    (is_even && is_square).then_some(scale)
 }
 
 fn white() -> [f32; 3] {
@@ -105,7 +124,37 @@ fn of_extras(
         .map_err(|error| refuse(format!("a valid area light: {error}")))?;
     // A mirroring transform reverses the outline.
     let mirrored = to_world.determinant() < 0.0;
+    let is_round = json.radius.is_some() || json.length.is_some();
     let (emitter, position) = match (json.shape, json.width, json.height, json.vertices) {
+        (shape @ (Shape::Disc | Shape::Sphere | Shape::Line), None, None, None) => {
+            let scale = even_scale(to_world).ok_or_else(|| {
+                let accepted =
+                    "a node that stretches a disc, a sphere or a line alike along all axes";
+                refuse(accepted.into())
+            })?;
+            let emitter = match (shape, json.radius, json.length) {
+                (Shape::Disc, Some(radius), None) if radius > 0.0 => {
+                    Emitter::disc(to_world.transform_vector3(Vec3::NEG_Z), radius * scale)
+                }
+                (Shape::Sphere, Some(radius), None) if radius > 0.0 => {
+                    Emitter::sphere(radius * scale)
+                }
+                (Shape::Line, Some(radius), Some(length)) if radius > 0.0 && length > 0.0 => {
+                    let half = to_world.transform_vector3(Vec3::X * 0.5 * length);
+                    Emitter::line(half, radius * scale)
+                }
+                _ => {
+                    let accepted = "a disc or a sphere with a radius above 0, or a line with length and \
+                                    radius above 0";
+                    return Err(refuse(accepted.into()));
+                }
+            };
+            (emitter, to_world.transform_point3(Vec3::ZERO))
+        }
+        (Shape::Rectangle | Shape::Polygon, ..) if is_round => {
+            let accepted = "radius only for a disc, a sphere or a line, and length only for a line";
+            return Err(refuse(accepted.into()));
+        }
         (Shape::Rectangle, Some(width), Some(height), None) if !(width > 0.0 && height > 0.0) => {
             return Err(refuse("a rectangle with width and height above 0".into()));
         }
@@ -124,7 +173,8 @@ fn of_extras(
             Emitter::polygon(&world).map_err(|fault| refuse(format!("sound, but: {fault}")))?
         }
         _ => {
-            let accepted = "a rectangle with width and height, or a polygon with vertices";
+            let accepted = "a rectangle with width and height, a polygon with vertices, a disc or a sphere \
+                            with radius, or a line with length and radius";
             return Err(refuse(accepted.into()));
         }
     };
@@ -205,10 +255,15 @@ fn of_extension(
             let half_y = place(0.0, -0.5 * height);
             (Emitter::rectangle(place(0.5 * width, 0.0), half_y), position)
         }
+        "disc" if even_scale(to_world).is_some() => {
+            let scale = even_scale(to_world).unwrap_or_default();
+            let normal = to_world.transform_vector3(Vec3::NEG_Z);
+            (Emitter::disc(normal, 0.5 * height * scale), position)
+        }
         "disc" => {
             warnings.add(format!(
-                "light {name:?}: a disc is drawn as a polygon of {MAX_VERTICES} vertices and the \
-                 same area"
+                "light {name:?}: a disc that its node stretches to an ellipse is drawn as a polygon of \
+                 {MAX_VERTICES} vertices and the same area"
             ));
             // The area of a regular polygon is n / 2 r^2 sin(2 pi / n).
             let step = TAU / MAX_VERTICES as f32;

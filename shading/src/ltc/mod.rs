@@ -36,6 +36,7 @@
 
 mod accuracy;
 mod diffuse_fresnel;
+mod ellipse;
 mod fit;
 mod generate;
 mod integrals;
@@ -50,6 +51,8 @@ mod table;
 
 pub use accuracy::{ACCURACY_DEGREES, Accuracy, AccuracyCase, accuracy_cases};
 pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
+pub use ellipse::{Ellipse, cap_integral, ellipse_integral, ltc_ellipse_integral, sphere_integral};
+pub(crate) use ellipse::{cone_polygon, disc_of_sphere};
 pub use fit::{Fit, fit};
 pub use generate::{FitReport, TableDifference, generate};
 pub use integrals::Integrals;

@@ -4,7 +4,10 @@
 use assign::{Emitter, Light, range_window};
 use glam::{DMat3, DVec3};
 
-use super::brdf::{Surface, f0_of, f90_of};
+use super::{
+    brdf::{Surface, f0_of, f90_of},
+    outline::SeenOutline,
+};
 use crate::ltc;
 
 /// Relative error at which the quadrature of the truth stops.
@@ -12,8 +15,7 @@ const TOLERANCE: f64 = 1e-4;
 
 /// An area light seen from a surface.
 pub(crate) struct SeenArea {
-    /// Vertices of the emitter in the shading frame, see [`ltc`].
-    vertices: Vec<DVec3>,
+    outline: SeenOutline,
     to_eye: DVec3,
     /// Radiance of the emitter times the window of each term.
     diffuse: DVec3,
@@ -41,9 +43,8 @@ impl SeenArea {
         let window = |range_m: f32| range_window(distance_2, f64::from(range_m));
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
         let frame = shading_frame(surface.normal, to_eye);
-        let vertices = emitter.vertices().iter();
         Some(Self {
-            vertices: vertices.map(|v| frame * (v.as_dvec3() - to_position)).collect(),
+            outline: SeenOutline::new(emitter, to_position, &frame),
             to_eye: frame * to_eye,
             diffuse: radiance * window(light.diffuse_range_m()),
             specular: radiance * window(light.range_m),
@@ -59,7 +60,8 @@ impl SeenArea {
         if self.specular == DVec3::ZERO && self.diffuse == DVec3::ZERO {
             return DVec3::ZERO;
         }
-        let found = ltc::integrate(&self.vertices, self.to_eye, self.roughness, TOLERANCE).value;
+        let vertices = self.outline.polygon();
+        let found = ltc::integrate(&vertices, self.to_eye, self.roughness, TOLERANCE).value;
         let channel = |c: usize| {
             let (albedo, f0) = (self.albedo[c], self.f0[c]);
             // With f90 below 1, less light is reflected at grazing incidence than in the integrals,
@@ -75,8 +77,8 @@ impl SeenArea {
 
     /// Radiance to the eye by linearly transformed cosines: `area_ltc.wesl`.
     pub(crate) fn ltc(&self, entry: &ltc::Entry) -> DVec3 {
-        let cosine = ltc::cosine_integral(&self.vertices);
-        let lobe = ltc::ltc_integral(&entry.inverse(), &self.vertices);
+        let cosine = self.outline.form_factor();
+        let lobe = self.outline.lobe_share(&entry.inverse());
         let kept = 1.0 - ltc::diffuse_fresnel(self.to_eye.z.abs());
         let channel = |c: usize| {
             let f0 = self.f0[c];

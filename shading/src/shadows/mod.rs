@@ -69,6 +69,8 @@ mod adaptive;
 mod banding;
 mod cast;
 mod clear_face;
+mod face;
+mod figures;
 mod occluders;
 mod plan;
 mod points;
@@ -93,9 +95,11 @@ use crate::{
 use adaptive::Adaptive;
 pub use adaptive::ShadowRefinement;
 use banding::Drawn;
+use face::Face;
+pub use figures::ShadowFigures;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
-use plan::{Face, Plan};
+use plan::Plan;
 use sight::Sight;
 use views::Views;
 
@@ -105,36 +109,6 @@ const MOST_ATLAS_PX: u32 = 1 << 15;
 /// Storage buffers that a shader with lists and shadows may bind: lights and lists 6, materials, the table of area
 /// lights, and the records of maps.
 const STORAGE_BUFFERS: u32 = 9;
-
-/// What was made for a shadow model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShadowFigures {
-    /// The model that was asked for.
-    pub model: ShadowModel,
-    /// Maps for each area light, or the most of them if frames subdivide. Fewer than asked for if more did not fit
-    /// the atlas.
-    pub maps_per_area_light: u32,
-    /// Maps of all lights at present.
-    pub maps: u32,
-    /// Faces of all maps at present.
-    pub faces: u32,
-    /// Width and height of the atlas, texels.
-    pub atlas_px: [u32; 2],
-    /// Bytes of what hides lights from groups ([`Renderer::find_occluders`](crate::Renderer::find_occluders)); 0 without it.
-    pub occluder_bytes: u64,
-}
-
-impl ShadowFigures {
-    /// Bytes of the atlas on the GPU.
-    pub fn atlas_bytes(&self) -> u64 {
-        self.atlas_px.map(u64::from).iter().product::<u64>() * 4
-    }
-
-    /// Whether area lights got fewer maps than asked for.
-    pub fn fell_back(&self) -> bool {
-        self.maps_per_area_light < self.model.maps()
-    }
-}
 
 /// The shadow maps of a scene's lights.
 #[derive(Debug)]

@@ -1,17 +1,17 @@
 //! Plans shadow maps: which points get maps, which faces they have, and where in the atlas each face lies.
 
 use assign::{AssignError, Light, LightShape, Outline};
-use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
+use glam::{DMat3, DVec3, Mat4, Vec3};
 
-use super::points::{LightPoint, points_of};
+use super::{
+    face::{FACES, Face, across, beyond, turned, view_to_clip, world_to_view},
+    points::{LightPoint, points_of},
+};
 use crate::{FEWEST_ADAPTIVE, MAP_COUNTS, ShadowModel};
 
 /// Texels beyond each edge of a face, per texel of the filter's side. The offset along the normal moves a look-up by at
 /// most one texel per texel of the filter, and its taps reach half as far again.
 const GUARD_PX: u32 = 2;
-
-/// Faces of a map that looks to all sides: each looks along an axis of the light.
-pub(super) const FACES: usize = 6;
 
 /// Outer half angles of spots up to this one, radians, get one face. A wider one would waste more texels at its edge
 /// than a hemisphere's five faces do.
@@ -24,26 +24,6 @@ const NEAR_SHARE: f64 = 1.0 / (1 << 20) as f64;
 /// rounds: 2^-14. A triangle interpolates depth to a few units in the last place of its largest depth, which is some
 /// hundred times that of its far end if it passes close to the light.
 const DEPTH_SLACK: f64 = 1.0 / (1 << 14) as f64;
-
-/// How far the rasteriser may move a vertex, texels: the least of the 8 bits that wgpu's back ends have below a texel.
-const SNAP_PX: f64 = 1.0 / 256.0;
-
-/// One face of a map: a picture of depth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Face {
-    /// World to view space: x right, y down, and -z forward. It may mirror.
-    pub(super) world_to_view: Mat4,
-    /// View to clip space, with reversed infinite depth.
-    pub(super) view_to_clip: Mat4,
-    /// Upper left corner in the atlas, texels.
-    pub(super) origin: [u32; 2],
-    /// Width and height, texels.
-    pub(super) size: [u32; 2],
-    /// Its eye, world space.
-    pub(super) eye: Vec3,
-    /// Distance from the eye beyond which nothing hides a sample that the light reaches, metres: [`beyond`].
-    pub(super) reach_m: f32,
-}
 
 /// Planned maps.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +88,7 @@ impl Reach {
                 Self::Half
             }
             LightShape::Spot { .. } => Self::All,
-            LightShape::Area(emitter) if emitter.two_sided => Self::All,
+            LightShape::Area(emitter) if emitter.shines_all_around() => Self::All,
             LightShape::Area(_) | LightShape::Vpl { .. } => Self::Half,
         }
     }
@@ -294,7 +274,7 @@ impl Planner {
         let (spread, half) = match reach {
             Reach::Cone(tangent) => (tangent, 0),
             Reach::Half => (0.0, 1 << 31),
-            Reach::All => (0.0, 0),
+            Reach::All => (round_spread(light), 0),
         };
         let axis = |axis: DVec3, last| [bits(axis.x), bits(axis.y), bits(axis.z), last];
         [
@@ -346,26 +326,14 @@ pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
     [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
 }
 
-/// Right, down and forward of each face: `face_of` in `shadow.wesl`.
-fn turned(axes: DMat3) -> [(DVec3, DVec3, DVec3); FACES] {
-    let (x, y, z) = (axes.x_axis, axes.y_axis, axes.z_axis);
-    [(x, y, z), (y, z, x), (y, z, -x), (x, z, y), (x, z, -y), (x, y, -z)]
-}
-
-/// The farthest texel centre that a look-up reads, along one axis, texels.
-fn across(taps: f64) -> f64 {
-    0.5 * taps + SNAP_PX
-}
-
-/// How much farther from the eye than a sample the farthest thing may be that hides it, at most.
-///
-/// A look-up reads texels up to `shift` texels from the sample's, per axis: the offset moves it by at most 1.5 of the
-/// reach (`occluders.rs`, for the widest cone), and the filter is `taps` wide. It compares a depth that is at most
-/// `1 / (1 - r / 2)` times the sample's. At equal depth, a point whose tangents differ by `t` is at most `1 + t` times as far.
-fn beyond(texel: f64, taps: f64) -> f64 {
-    let reach = across(taps) * std::f64::consts::SQRT_2;
-    let shift = 1.5 * reach + taps + 1.0;
-    (1.0 + std::f64::consts::SQRT_2 * shift * texel) / (1.0 - 0.5 * reach * texel).max(0.1)
+/// What `shadow.wesl` calls `SPHERE` and `LINE`; 0 for other lights.
+fn round_spread(light: &Light) -> f64 {
+    let LightShape::Area(emitter) = &light.shape else { return 0.0 };
+    match emitter.outline() {
+        Outline::Sphere => -1.0,
+        Outline::Line => -2.0,
+        Outline::Rectangle | Outline::Polygon | Outline::Disc => 0.0,
+    }
 }
 
 /// Single precision, as bits.
@@ -384,28 +352,11 @@ fn axes_of(light: &Light) -> DMat3 {
         LightShape::Point => DMat3::IDENTITY,
         LightShape::Spot { direction, .. } => around(direction.as_dvec3()),
         LightShape::Vpl { normal, .. } => around(normal.as_dvec3()),
+        LightShape::Area(emitter) if emitter.outline() == Outline::Line => {
+            around(emitter.half_axes()[0].as_dvec3())
+        }
         LightShape::Area(emitter) => around(emitter.normal().as_dvec3()),
     }
-}
-
-/// A rigid or mirrored transform with these unit rows, and `eye` at its origin.
-fn world_to_view(x: DVec3, y: DVec3, z: DVec3, eye: DVec3) -> Mat4 {
-    let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    glam::DMat4::from_cols(row(x), row(y), row(z), glam::DVec4::W).transpose().as_mat4()
-}
-
-/// Clip x runs from -`side` to `side` and clip y downwards from `rows[0]` to `rows[1]`, at depth 1. Clip depth is near
-/// over depth: 1 at the near plane and 0 at infinity.
-fn view_to_clip(side: f64, rows: [f64; 2], near_m: f64) -> Mat4 {
-    let height = rows[1] - rows[0];
-    // The image's top, clip y = 1, is row 0.
-    let (down, top) = (-2.0 / height, 1.0 + 2.0 * rows[0] / height);
-    Mat4::from_cols(
-        Vec4::new((1.0 / side) as f32, 0.0, 0.0, 0.0),
-        Vec4::new(0.0, down as f32, 0.0, 0.0),
-        Vec4::new(0.0, -top as f32, 0.0, -1.0),
-        Vec4::new(0.0, 0.0, near_m as f32, 0.0),
-    )
 }
 
 #[cfg(test)]

@@ -1,6 +1,9 @@
 //! The points of an emitter from which shadow maps are drawn.
 
+mod curved;
+
 use assign::{Emitter, Outline};
+use curved::curved_point;
 use glam::{DVec3, Vec3};
 
 /// A point of an emitter, and its share of the light.
@@ -24,13 +27,17 @@ impl LightPoint {
 /// rectangle's is the sum over its quads. So a point has the weight of the quads that share it: 1 at a corner, 2 on an
 /// edge, 4 inside. This is the trapezoidal rule. The equal weights of equation 6.2 would give the outline too much.
 ///
-/// A polygon has no quads. Its points are those of a Hammersley set, mapped to equal areas, with equal weights.
+/// A polygon has no quads. Its points are those of a Hammersley set, mapped to equal areas, with equal weights. Those of
+/// discs, spheres and lines have equal weights, too.
 pub(super) fn points_of(emitter: &Emitter, count: u32) -> Vec<LightPoint> {
     match (count, emitter.outline()) {
         (0 | 1, Outline::Rectangle) => vec![LightPoint::MIDDLE],
         (_, Outline::Rectangle) => corners_of_quads(emitter, count.isqrt()),
         (_, Outline::Polygon) => (0..count.max(1))
             .map(|ix| LightPoint { offset: polygon_point(emitter, ix, count.max(1)), weight: 1 })
+            .collect(),
+        (_, Outline::Disc | Outline::Sphere | Outline::Line) => (0..count.max(1))
+            .map(|ix| LightPoint { offset: curved_point(emitter, ix, count), weight: 1 })
             .collect(),
     }
 }

@@ -6,7 +6,8 @@ use assign::{Emitter, Light};
 use glam::{Mat4, Vec3};
 
 use super::{
-    plan::{Face, Site, point_record},
+    face::Face,
+    plan::{Site, point_record},
     quadtree::{Change, Node, POINTS, Quadtree, place_of, uniform_points},
 };
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use super::plan::Face;
+use super::face::Face;
 
 /// What rounding may move a piece by, as a share of its coordinates.
 const ROUNDING: f64 = 1e-5;

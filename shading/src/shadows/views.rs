@@ -3,7 +3,7 @@
 use assign::{AssignError, Gpu, ViewUniform};
 use bytemuck::{Zeroable, bytes_of};
 
-use super::plan::Face;
+use super::face::Face;
 
 /// The views of all faces in one buffer, bound at an offset for each face.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
-//! Area lights with shadows: the radiance of a flat emitter, reflected at a sample.
+//! Area lights with shadows: the radiance of an emitter, reflected at a sample.
 //!
-//! Directions are drawn in pairs. One is uniform in the solid angle of the emitter's rectangle
+//! Directions are drawn in pairs. One is uniform in the solid angle of a rectangle that covers the emitter
 //! (Ureña et al. 2013), and one is drawn as the BRDF reflects. The balance heuristic weights both
 //! (Veach and Guibas 1995, equation 14): a direction counts once over the sum of both densities,
 //! whichever drew it. Where the lobe is wide, both directions are drawn from the rectangle. So
@@ -14,10 +14,13 @@
 //! the radiance itself.
 
 use assign::{Emitter, Light, range_window};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{
-    Estimate, Numbers, SurfaceSample, TracedScene, brdf_sampler::BrdfSampler, numbers::Point,
+    Estimate, Numbers, SurfaceSample, TracedScene,
+    brdf_sampler::BrdfSampler,
+    numbers::Point,
+    silhouette::{Cover, Silhouette},
 };
 use crate::{
     ltc::SphericalRectangle,
@@ -39,13 +42,10 @@ pub(super) const PAIR_DIMENSIONS: u32 = 5;
 /// An emitter seen from a sample.
 pub(super) struct SeenEmitter<'a> {
     light: &'a Light,
-    emitter: &'a Emitter,
     sample: &'a SurfaceSample,
     /// Vector from the sample to the emitter's middle, metres.
     center: DVec3,
-    /// Normal computed from the vertices, of any length. Half axes and [`Emitter::normal`] are
-    /// rounded.
-    normal: DVec3,
+    silhouette: Silhouette<'a>,
     /// Emitted radiance times the window of diffuse and of specular light.
     diffuse: DVec3,
     specular: DVec3,
@@ -64,23 +64,15 @@ impl<'a> SeenEmitter<'a> {
         }
         let distance_2 = (emitter.closest(-center) + center).length_squared();
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
-        let vertices = emitter.vertices().iter().map(|v| v.as_dvec3());
-        let next = vertices.clone().cycle().skip(1);
         let seen = Self {
             light,
-            emitter,
             sample,
             center,
-            normal: vertices.zip(next).map(|(a, b)| a.cross(b)).sum(),
+            silhouette: Silhouette::new(emitter, center),
             diffuse: radiance * range_window(distance_2, f64::from(light.diffuse_range_m())),
             specular: radiance * range_window(distance_2, f64::from(light.range_m)),
         };
         (seen.specular != DVec3::ZERO).then_some(seen)
-    }
-
-    /// Vector from the sample to a vertex.
-    fn vertex(&self, ix: usize) -> DVec3 {
-        self.emitter.vertices()[ix].as_dvec3() + self.center
     }
 
     /// The reflected radiance that nothing in the scene blocks, from `pairs` of directions.
@@ -130,27 +122,21 @@ impl<'a> SeenEmitter<'a> {
         if whole == DVec3::ZERO {
             return Estimate::default();
         }
-        let [x, y] = self.emitter.half_axes().map(Vec3::as_dvec3);
+        let Cover { center, x, y } = self.silhouette.cover();
+        let normal = x.cross(y);
         Estimate::of_shares(points, numbers, whole, |point| {
             let [u, v] = point.at(0).map(|t: f64| 2.0 * t - 1.0);
-            let offset = self.center + x * u + y * v;
-            let counts = surface.normal.dot(offset) > 0.0 && self.is_inside(offset);
-            if !counts {
+            let place = center + x * u + y * v;
+            let is_above = surface.normal.dot(place) > 0.0;
+            let Some(offset) = self.silhouette.point_along(place).filter(|_| is_above) else {
                 return (DVec3::ZERO, DVec3::ZERO);
-            }
-            // cos(sample) cos(emitter) / distance^2, in no unit.
-            let cosines = surface.normal.dot(offset) * self.normal.dot(offset).abs();
-            let irradiance = DVec3::splat(cosines / offset.length_squared().powi(2));
+            };
+            // cos(sample) cos(emitter) / distance^2, in no unit: the solid angle of a patch of the cover.
+            let cosines = surface.normal.dot(place) * normal.dot(place).abs();
+            let irradiance = DVec3::splat(cosines / place.length_squared().powi(2));
             let is_seen = scene.sees(self.sample, *position + offset);
             (if is_seen { irradiance } else { DVec3::ZERO }, irradiance)
         })
-    }
-
-    /// Whether the direction to a place hits the emitter.
-    fn is_inside(&self, offset: DVec3) -> bool {
-        let count = self.emitter.vertices().len();
-        let turn = |ix: usize| self.vertex(ix).cross(self.vertex((ix + 1) % count)).dot(offset);
-        (0..count).all(|ix| turn(ix) >= 0.0) || (0..count).all(|ix| turn(ix) <= 0.0)
     }
 
     /// The light of the whole emitter, if its middle is visible.
@@ -167,21 +153,14 @@ impl<'a> SeenEmitter<'a> {
     fn reflected(&self, direction: DVec3, scene: &TracedScene<'_>) -> Drawn {
         let surface = &self.sample.surface;
         let cos = surface.normal.dot(direction);
-        let Some(point) = self.point_along(direction).filter(|_| cos > 0.0) else {
+        let Some(offset) = self.silhouette.point_along(direction).filter(|_| cos > 0.0) else {
             return Drawn::default();
         };
+        let point = self.sample.position + offset;
         let lobes = lobes_of(surface, self.sample.to_eye, direction);
         let whole = (self.diffuse * lobes.diffuse + self.specular * lobes.specular) * cos;
         let is_seen = scene.sees(self.sample, point);
         Drawn { shadowed: if is_seen { whole } else { DVec3::ZERO }, whole }
-    }
-
-    /// The point of the emitter that a ray from the sample hits, world space. The ray must pass all
-    /// edges on the same side. This test needs no tolerance, however large or far the emitter is.
-    fn point_along(&self, direction: DVec3) -> Option<DVec3> {
-        let is_inside = self.is_inside(direction);
-        let distance_m = self.normal.dot(self.vertex(0)) / self.normal.dot(direction);
-        (distance_m > 0.0 && is_inside).then(|| self.sample.position + direction * distance_m)
     }
 }
 
@@ -203,8 +182,8 @@ struct Pairs<'a> {
 impl<'a> Pairs<'a> {
     /// `None` if the emitter is too small to draw from.
     fn new(seen: &'a SeenEmitter<'a>) -> Option<Self> {
-        let [x, y] = seen.emitter.half_axes().map(Vec3::as_dvec3);
-        let rectangle = SphericalRectangle::new(seen.center - x - y, 2.0 * x, 2.0 * y);
+        let Cover { center, x, y } = seen.silhouette.cover();
+        let rectangle = SphericalRectangle::new(center - x - y, 2.0 * x, 2.0 * y);
         let rectangle = rectangle.filter(|r| r.solid_angle() > SMALL)?;
         let brdf = BrdfSampler::new(&seen.sample.surface, seen.sample.to_eye);
         let is_narrow = rectangle.solid_angle() * brdf.peak_density() > NARROW;

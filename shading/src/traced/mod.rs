@@ -49,6 +49,7 @@ mod numbers;
 mod primary;
 mod scene;
 mod seen;
+mod silhouette;
 mod surface;
 mod texture;
 mod triangles;

@@ -46,6 +46,28 @@ pub(crate) fn lights(count: usize) -> Vec<Light> {
         .collect()
 }
 
+/// Discs, spheres and lines, from 4 cm to 4 m.
+pub(crate) fn curved_lights(count: usize) -> Vec<Light> {
+    let mut rng = Pcg64Mcg::seed_from_u64(17);
+    (0..count)
+        .map(|ix| {
+            let axis = direction(&mut rng);
+            let size = 10_f32.powf(rng.random_range(-1.4..0.3));
+            let emitter = match ix % 3 {
+                0 if ix % 2 == 0 => Emitter::disc(axis, size).two_sided(),
+                0 => Emitter::disc(axis, size),
+                1 => Emitter::sphere(size),
+                _ => Emitter::line(axis * size, size * rng.random_range(0.02..0.3)),
+            };
+            let emitter = emitter.with_diffuse_share(if ix % 5 == 0 { 0.7 } else { 1.0 });
+            let position = 3.0 * direction(&mut rng);
+            let light = Light::area(emitter, position, 6.0, Vec3::new(4.0, 2.0, 1.0));
+            light.check().unwrap();
+            light
+        })
+        .collect()
+}
+
 /// Points all around each light, seen from their front, of every roughness.
 pub(crate) fn queries(lights: &[Light], count: usize) -> Vec<Query> {
     let mut rng = Pcg64Mcg::seed_from_u64(8);

@@ -39,18 +39,31 @@ pub(crate) fn evaluate(
     queries: &[Query],
     area: AreaModel,
 ) -> Vec<[f32; 4]> {
+    evaluate_far(gpu, lights, queries, area, None)
+}
+
+/// The same with points for area lights that look smaller than a solid angle.
+pub(crate) fn evaluate_far(
+    gpu: &Gpu,
+    lights: &LightBuffer,
+    queries: &[Query],
+    area: AreaModel,
+    area_lod: Option<f32>,
+) -> Vec<[f32; 4]> {
     let view = super::view([8, 8]);
     let mut bindings = FrameBindings::new(gpu);
     bindings.update(gpu, &Frame::new(&view, lights)).unwrap();
     let asked = upload(gpu, "queries", queries).unwrap();
     let answered = upload(gpu, "answers", &vec![[0.0_f32; 4]; queries.len()]).unwrap();
-    let numbers = upload(gpu, "lighting", &[0, area.samples(), 0, 0, 0, 0, 0, 0]).unwrap();
+    let lod = area_lod.unwrap_or(0.0).to_bits();
+    let numbers = upload(gpu, "lighting", &[0, area.samples(), 0, 0, 0, lod, 0, 0]).unwrap();
     let table = shading::ltc::Table::load(area.table().unwrap_or_default()).unwrap();
     let looked_up = upload(gpu, "table", table.as_bytes()).unwrap();
     let shader = shading::lighting_shader()
         .module("package::evaluate", EVALUATE)
         .module("package::strategy", include_str!("../../../assign/src/shaders/everything.wesl"))
-        .light_kinds(lights.kinds());
+        .light_kinds(lights.kinds())
+        .flag("area_lod", area_lod.is_some());
     let flags = area.flags().iter();
     let shader = flags.fold(shader, |shader, flag| shader.flag(flag, lights.kinds().areas));
     let module = shader.create(gpu, "package::evaluate").unwrap();

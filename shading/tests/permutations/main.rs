@@ -364,6 +364,12 @@ fn without_area_lights_no_model_changes_the_shader() {
         let with = source(&[&["spots", "areas"], model].concat());
         assert!(with.source.contains("Emitter"), "{model:?}");
         assert!(!sources.contains(&with.source), "{model:?} compiles as another does");
+        for more in [&["curved"][..], &["area_lod"], &["curved", "area_lod"]] {
+            let more = source(&[&["spots", "areas"], more, model].concat());
+            assert_eq!(more.bindings.contains(&(2, 7)), with.bindings.contains(&(2, 7)));
+            assert!(!sources.contains(&more.source), "{model:?} compiles as another does");
+            sources.push(more.source);
+        }
         sources.push(with.source);
     }
 }

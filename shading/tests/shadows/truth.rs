@@ -127,9 +127,9 @@ fn lights_of_one_position_cast_exact_shadows_up_to_the_texel() {
     }
 }
 
-/// Light falls through the holes of alpha masks, and two-sided emitters and polygons have maps.
+/// Light falls through the holes of alpha masks, and two-sided emitters, polygons, spheres and lines have maps.
 #[test]
-fn masks_keep_their_holes_and_emitters_may_be_two_sided_or_polygons() {
+fn masks_keep_their_holes_and_emitters_have_any_outline() {
     let gpu = common::gpu();
     let scene = common::showcase();
     let both = Emitter::rectangle(Vec3::X * 0.3, Vec3::Y * 0.3).two_sided();
@@ -139,9 +139,12 @@ fn masks_keep_their_holes_and_emitters_may_be_two_sided_or_polygons() {
     let mut turned = corners;
     turned.reverse();
     let (polygon, middle) = Emitter::polygon(&turned).unwrap();
+    let line = Emitter::line(Vec3::new(0.5, 0.1, 0.0), 0.05);
     let lights = [
         Light::area(both, Vec3::new(0.5, 1.3, -0.5), 20.0, Vec3::splat(2.0)),
         Light::area(polygon, middle, 20.0, Vec3::splat(3.0)),
+        Light::area(Emitter::sphere(0.25), Vec3::new(0.5, 1.3, -0.5), 20.0, Vec3::splat(2.0)),
+        Light::area(line, Vec3::new(-1.5, 1.2, 0.7), 20.0, Vec3::splat(3.0)),
         Light::point(Vec3::new(-1.5, 1.0, 0.5), 20.0, Vec3::splat(2.0)),
     ];
     let view = common::view(SIZE);

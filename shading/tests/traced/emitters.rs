@@ -22,9 +22,18 @@ fn sampled_emitters_agree_with_the_quadrature() {
     let far = Vec3::new(-1.0, 2.0, 0.4);
     let close = Vec3::new(0.3, 0.1, 0.1);
     // X x Z looks down.
-    for (emitter, position) in
-        [(rectangle(1.0, false), far), (rectangle(0.2, true), close), (polygon, middle)]
-    {
+    let above = Vec3::new(0.02, 2.0, 0.01);
+    for (emitter, position) in [
+        (rectangle(1.0, false), far),
+        (rectangle(0.2, true), close),
+        (polygon, middle),
+        (Emitter::disc(Vec3::NEG_Y, 0.9), far),
+        (Emitter::sphere(0.8), far),
+        (Emitter::line(Vec3::new(0.8, 0.2, 0.0), 0.2), far),
+        // Seen along its axis, and with one end below the horizon.
+        (Emitter::line(Vec3::Y, 0.3), above),
+        (Emitter::line(Vec3::new(0.3, 0.5, 0.0), 0.1), close + 0.2 * Vec3::X),
+    ] {
         let light = Light::area(emitter, position, 5.0, Vec3::new(1.0, 2.0, 4.0));
         for roughness in [0.05, 0.3, 1.0] {
             let at = sample(DVec3::ZERO, DVec3::Y, roughness);
@@ -47,6 +56,15 @@ fn sampled_emitters_agree_with_the_quadrature() {
     let behind = sample(DVec3::new(0.0, 3.0, 0.0), DVec3::NEG_Y, 0.5);
     let light = Light::area(rectangle(1.0, false), far, 5.0, Vec3::ONE);
     assert_eq!(direct_light(&light, &behind, None, 1, numbers()), Estimate::default());
+    // Nothing shines inwards.
+    for solid in [Emitter::sphere(1.0), Emitter::line(Vec3::X, 1.0)] {
+        let light = Light::area(solid, Vec3::new(0.2, 0.5, 0.0), 5.0, Vec3::ONE);
+        let inside = sample(DVec3::ZERO, DVec3::Y, 0.5);
+        assert_eq!(
+            direct_light(&light, &inside, Some(&traced), 64, numbers()),
+            Estimate::default()
+        );
+    }
     let both = Light::area(rectangle(1.0, true), far, 5.0, Vec3::ONE);
     assert!(direct_light(&both, &behind, None, 1, numbers()).mean.x > 0.0);
 }
@@ -60,9 +78,11 @@ fn an_emitters_size_does_not_depend_on_its_range() {
         .map(|(x, z): (f32, f32)| Vec3::new(x, 2.0 + 0.2 * x, z));
     let (polygon, middle) = Emitter::polygon(&pentagon).unwrap();
     let (polygon, rectangle) = (polygon.two_sided(), rectangle(0.5, true));
+    let line = Emitter::line(Vec3::X * 0.5, 0.1);
     let at = sample(DVec3::ZERO, DVec3::Y, 0.5);
     for range_m in [1e2, 1e7, 1e8] {
-        for (emitter, position) in [(polygon, middle), (rectangle, Vec3::Y * 3.0)] {
+        let high = Vec3::Y * 3.0;
+        for (emitter, position) in [(polygon, middle), (rectangle, high), (line, high)] {
             let light = Light::area(emitter, position, range_m, Vec3::ONE);
             let exact = direct_light(&light, &at, None, 1, numbers()).mean.x;
             let drawn = |seed| direct_light(&light, &at, Some(&traced), 63, Numbers::new(seed));

@@ -46,9 +46,52 @@ fn errors_of_area_lights_name_the_field() {
     let misspelt = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "colour": 1 }));
     assert!(misspelt.contains("colour"), "{misspelt}");
     let disc = error(json!({ "shape": "disc" }));
-    assert!(disc.contains("rectangle") && disc.contains("polygon"), "{disc}");
+    assert!(disc.contains("radius above 0"), "{disc}");
+    let flat = error(json!({ "shape": "sphere", "radius": 0.0 }));
+    assert!(flat.contains("radius above 0"), "{flat}");
+    let short = error(json!({ "shape": "line", "radius": 0.1 }));
+    assert!(short.contains("length and radius"), "{short}");
+    let round = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "radius": 1 }));
+    assert!(round.contains("radius only for a disc"), "{round}");
+    let wide = error(json!({ "shape": "sphere", "radius": 1, "width": 1 }));
+    assert!(wide.contains("a disc or a sphere"), "{wide}");
+    let mut sample = sample();
+    sample.json["nodes"][0]["extras"] =
+        json!({ "lightbench_area_light": { "shape": "sphere", "radius": 1 } });
+    sample.json["nodes"][0]["scale"] = json!([1, 2, 1]);
+    let stretched = load(&sample).expect_err("faulty").to_string();
+    assert!(stretched.contains("alike along all axes"), "{stretched}");
     let line = error(json!({ "shape": "polygon", "vertices": [[0, 0, 0], [1, 0, 0]] }));
     assert!(line.contains("vertex count is 2"), "{line}");
+}
+
+#[test]
+fn extras_carry_curved_area_lights() {
+    let emitter = |light, kind| {
+        let scene = with_area_light(light).expect("valid");
+        let light = *scene.lights.iter().find(|l| l.kind() == kind).expect("there");
+        light.check().expect("sound");
+        let hash = scene.hash();
+        let scaled = scene.scaled(2.0).expect("in range");
+        let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
+        let twice = scaled.lights.iter().find(|l| l.kind() == kind).expect("there");
+        let LightShape::Area(twice) = twice.shape else { panic!("{twice:?}") };
+        assert_eq!(twice.radius_m(), 2.0 * emitter.radius_m());
+        (emitter, light.intensity, hash)
+    };
+    let sphere = json!({ "shape": "sphere", "radius": 0.5, "intensity": 3.0 });
+    let (found, intensity, hash) = emitter(sphere, LightKind::Sphere);
+    assert_eq!((found.radius_m(), intensity), (0.5, Vec3::splat(3.0)));
+    let larger = json!({ "shape": "sphere", "radius": 0.6, "intensity": 3.0 });
+    assert_ne!(emitter(larger, LightKind::Sphere).2, hash);
+    let disc = json!({ "shape": "disc", "radius": 0.5, "two_sided": true });
+    let (found, _, hash) = emitter(disc, LightKind::Disc);
+    assert!((found.normal() - Vec3::NEG_Z).length() < 1e-6 && found.two_sided, "{found:?}");
+    let one_sided = json!({ "shape": "disc", "radius": 0.5 });
+    assert_ne!(emitter(one_sided, LightKind::Disc).2, hash);
+    let line = json!({ "shape": "line", "radius": 0.1, "length": 3.0 });
+    let (found, ..) = emitter(line, LightKind::Line);
+    assert_eq!((found.half_axes()[0], found.radius_m()), (Vec3::X * 1.5, 0.1));
 }
 
 /// The sample with a light of EXT_lights_area on its third node, which looks along -Z.
@@ -80,9 +123,16 @@ fn ext_lights_area_gives_area_lights() {
     let disc = json!({"type": "disc", "intensity": 10.0, "size": 1.0});
     let scene = with_area_extension(disc).expect("valid");
     let (emitter, _) = emitter_of(&scene);
+    assert_eq!((scene.lights[0].kind(), scene.warnings.len()), (LightKind::Disc, 0));
     assert!((emitter.area() / std::f32::consts::PI - 1.0).abs() < 1e-5, "{}", emitter.area());
     assert!((emitter.normal() - Vec3::NEG_Z).length() < 1e-5, "{}", emitter.normal());
-    assert_warns(&scene, "a disc is drawn as a polygon");
+    let mut stretched = sample();
+    stretched.json["extensions"]["EXT_lights_area"] = json!({"lights": [{"type": "disc"}]});
+    stretched.json["nodes"][2]["extensions"] = json!({"EXT_lights_area": {"light": 0}});
+    stretched.json["nodes"][2]["scale"] = json!([1, 2, 1]);
+    let scene = load(&stretched).expect("valid");
+    assert_eq!(scene.lights[0].kind(), LightKind::Polygon);
+    assert_warns(&scene, "stretches to an ellipse");
     let odd = with_area_extension(json!({"type": "tube", "name": "neon"})).expect("valid");
     assert!(odd.lights.is_empty());
     assert_warns(
