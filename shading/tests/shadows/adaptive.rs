@@ -122,7 +122,11 @@ fn moved_cameras_reuse_places_and_draw_only_new_maps() {
     let gpu = common::gpu();
     let far = lamp(Vec3::new(1.5, 2.2, -1.0));
     let lights = LightBuffer::new(&gpu, &[light(), far]).unwrap();
-    let (scene, first) = (plates(), view());
+    // A plate right under the first lamp: maps of two of its points show it at very different places.
+    let floor = [Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0];
+    let plate = [Vec3::new(0.1, 1.9, 0.5), Vec3::Z * 0.15, Vec3::X * 0.15];
+    let material = Material { double_sided: true, ..grey(0.5) };
+    let (scene, first) = (scene_of(&[floor, plate], material, vec![]), view());
     let eye = Vec3::new(1.5, 0.8, 1.0);
     let second = View::look_at(eye, Vec3::new(1.0, 0.0, -1.0), 0.8, 0.1, [96, 64]);
     let mut renderer = renderer_of(&gpu, &scene, &first, &lights, adaptive(64, 2, 40));
