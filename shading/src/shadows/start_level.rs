@@ -14,7 +14,7 @@
 //! pruning takes back what shows no bands.
 
 use assign::{Emitter, Projection, View};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::quadtree::LEVELS;
 
@@ -31,7 +31,7 @@ pub(super) fn start_level(view: &View, emitter: &Emitter, position: Vec3, down: 
     };
     let px_per_unit =
         0.5 * f64::from(view.viewport.height) * f64::from(view.view_to_clip().y_axis.y).abs();
-    let side_m = emitter.half_axes().map(|half| 2.0 * DVec3::from(half.as_dvec3()).length());
+    let side_m = emitter.half_axes().map(|half| 2.0 * half.as_dvec3().length());
     let side_px = side_m[0].max(side_m[1]) * px_per_unit;
     let widest = |level: u32| BAND_PX * f64::from(down << level) * distance_m;
     (0..LEVELS).find(|level| side_px <= widest(*level)).unwrap_or(LEVELS)
