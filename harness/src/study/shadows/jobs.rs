@@ -2,7 +2,6 @@
 
 use shading::{MAX_MAP_PX, MIN_MAP_PX, ShadowModel};
 
-use super::occlusion;
 use crate::{
     bench::Bench,
     cli::{Size, StudyArgs},
@@ -107,13 +106,11 @@ pub(crate) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let ([core, _], _) = scene.boxes(bench)?;
-    let mut jobs = plan(args, scene, core.diagonal() * RANGE_SHARE);
-    jobs.push(occlusion::job(args, scene, extent_of(args)));
-    Ok(jobs)
+    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
 }
 
 /// How much the study looks at.
-fn extent_of(args: &StudyArgs) -> &'static Extent {
+pub(crate) fn extent_of(args: &StudyArgs) -> &'static Extent {
     if args.quick { &QUICK } else { &FULL }
 }
 
