@@ -2,7 +2,7 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Gpu, GroupShape, LightKinds, LightSource,
-    LightTraits, Shader, Storage, StrategyWesl,
+    LightTraits, OcclusionTest, Shader, Storage, StrategyWesl,
 };
 
 /// Bind group of the lists inside the driver's own kernels.
@@ -96,10 +96,9 @@ impl Variant {
         let is_hierarchy = self.settings.source == LightSource::Hierarchy;
         let levels = if is_hierarchy { lights.levels } else { 0 };
         let occlusion = self.settings.occlusion;
-        let shader = match occlusion {
-            Some(test) => test.mount(Shader::new(LISTS_GROUP)),
-            None => Shader::new(LISTS_GROUP),
-        };
+        let mounted = occlusion.into_iter().flat_map(OcclusionTest::modules);
+        let shader = mounted
+            .fold(Shader::new(LISTS_GROUP), |shader, (path, source)| shader.module(path, source));
         shader
             .module("package::cull", include_str!("shaders/cull.wesl"))
             .module("package::walk", include_str!("shaders/walk.wesl"))

@@ -29,8 +29,6 @@
 //! coordinate of all of its samples as shaders compute them, rounding included. `hides` returns true only if shading
 //! adds exactly 0 for this light at every sample in the group and in `volume`.
 
-use crate::Shader;
-
 /// A renderer's test of whether surfaces hide a light from a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct OcclusionTest {
@@ -54,10 +52,9 @@ impl OcclusionTest {
         Self { wesl, imports }
     }
 
-    /// Mounts the test.
-    pub(crate) fn mount<'a>(self, shader: Shader<'a>) -> Shader<'a> {
-        let shader = shader.module("package::occlusion", self.wesl);
-        self.imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
+    /// Path and source of its modules.
+    pub(crate) fn modules(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        std::iter::once(("package::occlusion", self.wesl)).chain(self.imports.iter().copied())
     }
 }
 

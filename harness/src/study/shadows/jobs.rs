@@ -4,7 +4,6 @@ use assign::LightShape;
 use glam::DVec3;
 use shading::{MAX_MAP_PX, MIN_MAP_PX, ShadowModel};
 
-use super::occlusion;
 use crate::{
     bench::Bench,
     cli::{self, Invocation, Size, StudyArgs},
@@ -170,13 +169,11 @@ pub(crate) fn jobs(
     let ([core, _], _) = scene.boxes(bench)?;
     let range_m = core.diagonal() * RANGE_SHARE;
     let stops = stops(bench, args, scene, range_m)?;
-    let mut jobs = plan(args, scene, range_m, &stops);
-    jobs.push(occlusion::job(args, scene, extent_of(args)));
-    Ok(jobs)
+    Ok(plan(args, scene, range_m, &stops))
 }
 
 /// How much the study looks at.
-fn extent_of(args: &StudyArgs) -> &'static Extent {
+pub(crate) fn extent_of(args: &StudyArgs) -> &'static Extent {
     if args.quick { &QUICK } else { &FULL }
 }
 

@@ -14,7 +14,12 @@ mod occlusion;
 mod page;
 
 use super::against_truth::{TruthOf, compare_with_truths};
+use super::job::Job;
+use super::scene::StudyScene;
 use super::slice::{Study, TakesMotion, atrium};
+use crate::bench::Bench;
+use crate::cli::StudyArgs;
+use crate::error::HarnessError;
 use crate::report::markup::Html;
 
 /// The study of shadow maps.
@@ -22,7 +27,7 @@ pub(crate) const STUDY: Study = Study {
     name: "shadows",
     answers: "How far shadow maps of area lights are from the truth, by their number, size and filter, and by the lights in one atlas",
     scenes: atrium,
-    jobs: jobs::jobs,
+    jobs: all_jobs,
     motion: TakesMotion::None("shadow maps are drawn once, so the lights must stand still"),
     after_run: |done| compare_with_truths(done, &jobs::AGAINST, TruthOf::Lights),
     headline: page::headline,
@@ -34,3 +39,14 @@ pub(crate) const STUDY: Study = Study {
     tells_warnings: true,
     notices: |_| Vec::new(),
 };
+
+/// The jobs on errors, and the one on lists that know occlusion.
+fn all_jobs(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+) -> Result<Vec<Job>, HarnessError> {
+    let mut all = jobs::jobs(bench, args, scene)?;
+    all.push(occlusion::job(args, scene, jobs::extent_of(args)));
+    Ok(all)
+}

@@ -15,7 +15,7 @@ fn origin([width, height]: [u32; 2], level: u32) -> [u32; 2] {
 fn levels_lie_apart_inside_their_texture_and_its_size_tells_that_of_the_first() {
     for base in [[16, 16], [16, 32], [25, 75], [99, 17], [1000, 333], [8192, 8191]] {
         let [width, height] = texture_size(base);
-        assert_eq!((2 * width + 2) / 3, base[0], "{base:?}");
+        assert_eq!((2 * width).div_ceil(3), base[0], "{base:?}");
         let mut end = 0;
         for (level, [w, h]) in (0..).zip(level_sizes(base)) {
             let [x, y] = origin(base, level);
