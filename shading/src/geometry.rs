@@ -8,10 +8,11 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
+    draws::{Draw, DrawKey},
     lighting_inputs::{Bound, LightingInputs},
     materials::{MaterialKey, Materials},
     mesh_buffers::{MeshRange, colors, concatenate},
-    pieces::Piece,
+    pieces::{Piece, seen_draws},
 };
 
 /// `scene.wesl`, `struct Instance`. 112 bytes.
@@ -34,33 +35,12 @@ pub struct InstanceRecord {
     pub handedness: f32,
 }
 
-/// One indexed draw of consecutive instances of one mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Draw {
-    pub(crate) key: DrawKey,
-    pub(crate) material: u32,
-    pub(crate) first_index: u32,
-    pub(crate) index_count: u32,
-    pub(crate) base_vertex: i32,
-    pub(crate) first_instance: u32,
-    pub(crate) instance_count: u32,
-    /// Whether its material is transparent.
-    pub(crate) is_transparent: bool,
-}
-
 /// A transparent surface: one instance of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sheet {
     pub(crate) draw: Draw,
     /// The centre of the box around it, world space.
     pub(crate) center_world: Vec3,
-}
-
-/// The properties of a draw that decide its pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct DrawKey {
-    pub(crate) material: MaterialKey,
-    pub(crate) mirrored: bool,
 }
 
 /// A scene's geometry and materials on the GPU: bind group 2. Clones share them.
@@ -194,8 +174,19 @@ impl SceneGpu {
         self.draw_each(pass, textures, draws.copied(), pipeline);
     }
 
+    /// Draws all pieces that may be seen, sorted by pipeline. `pipeline` looks up a pipeline.
+    pub(crate) fn draw_pieces<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        textures: bool,
+        may_see: impl Fn([Vec3; 2]) -> bool,
+        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
+    ) {
+        self.draw_each(pass, textures, seen_draws(&self.draws, &self.pieces, may_see), pipeline);
+    }
+
     /// Issues draws in their order.
-    pub(crate) fn draw_each<'a>(
+    fn draw_each<'a>(
         &'a self,
         pass: &mut wgpu::RenderPass<'_>,
         textures: bool,
@@ -228,16 +219,6 @@ fn unique<'a>(draws: impl Iterator<Item = &'a Draw>) -> Vec<DrawKey> {
     keys.sort_unstable();
     keys.dedup();
     keys
-}
-
-impl Draw {
-    fn issue(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.draw_indexed(
-            self.first_index..self.first_index + self.index_count,
-            self.base_vertex,
-            self.first_instance..self.first_instance + self.instance_count,
-        );
-    }
 }
 
 fn check_size(

@@ -27,6 +27,7 @@ mod area_model;
 mod before_lighting;
 mod bound_maps;
 mod contributions;
+mod draws;
 mod dump;
 mod error;
 mod gbuffer_inputs;

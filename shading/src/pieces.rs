@@ -6,7 +6,7 @@
 use glam::{Mat4, Vec3};
 use scenes::Mesh;
 
-use crate::geometry::{Draw, DrawKey, SceneGpu};
+use crate::draws::Draw;
 
 /// Triangles of a piece.
 const TRIANGLES: usize = 256;
@@ -66,21 +66,12 @@ impl Piece {
     }
 }
 
-impl SceneGpu {
-    /// Draws all pieces that may be seen, sorted by pipeline. `pipeline` looks up a pipeline.
-    pub(crate) fn draw_pieces<'a>(
-        &'a self,
-        pass: &mut wgpu::RenderPass<'_>,
-        textures: bool,
-        may_see: impl Fn([Vec3; 2]) -> bool,
-        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
-    ) {
-        self.draw_each(pass, textures, seen_draws(&self.draws, &self.pieces, may_see), pipeline);
-    }
-}
-
 /// The draws of all pieces that may be seen, neighbours joined.
-fn seen_draws(draws: &[Draw], pieces: &[Piece], may_see: impl Fn([Vec3; 2]) -> bool) -> Vec<Draw> {
+pub(crate) fn seen_draws(
+    draws: &[Draw],
+    pieces: &[Piece],
+    may_see: impl Fn([Vec3; 2]) -> bool,
+) -> Vec<Draw> {
     let mut joined: Vec<(u32, Draw)> = Vec::new();
     for piece in pieces.iter().filter(|piece| may_see(piece.bounds)) {
         let whole = draws[piece.draw as usize];
@@ -105,7 +96,7 @@ mod tests {
     use scenes::{Aabb, Vertex};
 
     use super::*;
-    use crate::materials::MaterialKey;
+    use crate::{draws::DrawKey, materials::MaterialKey};
 
     /// A strip of triangles along x, one per metre.
     fn strip(triangles: u32) -> Mesh {

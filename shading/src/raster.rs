@@ -6,7 +6,8 @@ use assign::{DepthMapping, Gpu, Shader, View};
 
 use crate::{
     LightingOptions, ShadingError,
-    geometry::{DrawKey, SceneGpu},
+    draws::DrawKey,
+    geometry::SceneGpu,
     lighting_inputs::Bound,
     materials::TEXTURE_FLAGS,
     shaders::{LISTS_GROUP, lighting_modules},
