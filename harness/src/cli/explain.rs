@@ -70,7 +70,7 @@ pub struct ExplainArgs {
     pub area_model: Option<AreaModel>,
 
     /// Light by a point each area light that looks smaller than X steradians, as for `compare`
-    #[arg(long, value_name = "X", value_parser = values::number_from(1e-9, 6.28), allow_hyphen_values = true, help_heading = SHADING, hide_short_help = true)]
+    #[arg(long, value_name = "X", value_parser = values::number_from(1e-9, 6.0), allow_hyphen_values = true, help_heading = SHADING, hide_short_help = true)]
     pub area_lod: Option<f64>,
 
     /// How fall-off ends at a light's range

@@ -51,7 +51,10 @@ mod table;
 
 pub use accuracy::{ACCURACY_DEGREES, Accuracy, AccuracyCase, accuracy_cases};
 pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
-pub use ellipse::{Ellipse, cap_integral, ellipse_integral, ltc_ellipse_integral, sphere_integral};
+pub use ellipse::{
+    Ellipse, cap_integral, ellipse_integral, ltc_ellipse_integral, ltc_sphere_integral,
+    sphere_integral,
+};
 pub(crate) use ellipse::{cone_polygon, disc_of_sphere};
 pub use fit::{Fit, fit};
 pub use generate::{FitReport, TableDifference, generate};

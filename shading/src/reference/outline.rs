@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use crate::ltc::{
     Ellipse, cone_polygon, cosine_integral, disc_of_sphere, ellipse_integral, ltc_ellipse_integral,
-    ltc_integral, sphere_integral,
+    ltc_integral, ltc_sphere_integral, sphere_integral,
 };
 
 /// An emitter in the shading frame of a point ([`ltc`](crate::ltc)).
@@ -84,12 +84,10 @@ impl SeenOutline {
         match self {
             Self::Polygon(vertices) => ltc_integral(inverse, vertices),
             Self::Ellipse(ellipse) => ltc_ellipse_integral(inverse, ellipse),
-            Self::Sphere(center, radius) => {
-                ltc_ellipse_integral(inverse, &disc_of_sphere(*center, *radius))
-            }
+            Self::Sphere(center, radius) => ltc_sphere_integral(inverse, *center, *radius),
             Self::Line(line) => line.integral(
                 |quad| ltc_integral(inverse, quad),
-                |end, radius| ltc_ellipse_integral(inverse, &disc_of_sphere(end, radius)),
+                |end, radius| ltc_sphere_integral(inverse, end, radius),
             ),
         }
     }

@@ -26,7 +26,7 @@ pub(super) fn curved_point(emitter: &Emitter, ix: u32, count: u32) -> DVec3 {
     let [x, y] = emitter.half_axes().map(Vec3::as_dvec3);
     match emitter.outline() {
         Outline::Disc => {
-            let [x, y] = [x, y].map(|axis| axis.normalize_or_zero());
+            let [x, y] = [x, y].map(DVec3::normalize_or_zero);
             (x * cos + y * sin) * (radius * first.sqrt())
         }
         Outline::Line => {
