@@ -53,7 +53,7 @@ fn material() {
 #[test]
 fn lighting_uniform() {
     let rust = struct_layout!(LightingRecord: exit_weight, area_samples, applicable_lights, random_threshold,
-        specular_reach);
+        specular_reach, area_lod);
     assert_eq!(lighting().layout_of("LightingUniform"), rust, "WESL, then Rust");
 }
 

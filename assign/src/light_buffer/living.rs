@@ -213,12 +213,8 @@ impl Living {
     }
 
     /// Compiles kernels for other kinds of lights than those of the frame.
-    pub(super) fn compile_ahead(
-        &mut self,
-        gpu: &Gpu,
-        kinds: LightKinds,
-    ) -> Result<(), AssignError> {
-        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kinds))
+    pub(super) fn compile_ahead(&mut self, gpu: &Gpu, kind: LightKinds) -> Result<(), AssignError> {
+        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kind))
     }
 
     /// Whether the next frame sorts `lights` lights in a box. It does so when it is time, and if the frame
