@@ -123,7 +123,7 @@ fn look_ups_stay_inside_the_footprint_of_their_box() {
             let side = f64::from(taps.isqrt());
             let mut read = 0;
             for (bounds, (rectangle, kind, least, deepest)) in boxes.iter().zip(found) {
-                let [low, high] = bounds.map(|corner| corner.as_dvec3());
+                let [low, high] = bounds.map(Vec3::as_dvec3);
                 for _ in 0..40 {
                     let mut number = || rng.random::<f64>();
                     let at = low + (high - low) * DVec3::new(number(), number(), number());
