@@ -37,7 +37,7 @@ pub struct OcclusionTest {
 }
 
 impl OcclusionTest {
-    /// The test in WESL: [the contract](self). `imports` are path and source of each module that it imports, without the
+    /// The test in WESL, as the top of this file demands. `imports` are path and source of each module that it imports, without the
     /// contract's own.
     ///
     /// # Safety
