@@ -37,8 +37,8 @@ pub struct OcclusionTest {
 }
 
 impl OcclusionTest {
-    /// The test in WESL, as the top of this file demands. `imports` are path and source of each module that it imports, without the
-    /// contract's own.
+    /// The test in WESL, as the top of this file demands. `imports` are path and source of each module that it imports,
+    /// without the contract's own.
     ///
     /// # Safety
     ///
