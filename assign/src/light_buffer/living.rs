@@ -60,9 +60,7 @@ pub(super) struct Living {
     is_sorted: AtomicBool,
     /// How far balls may reach beyond those of the last recorded frame, metres.
     reach_m: f32,
-    /// Whether the frame was recorded.
-    is_recorded: AtomicBool,
-    /// For frames that read the lights.
+    /// Whether the lights were recorded since they were given.
     recorded: Arc<RecordedLights>,
     /// Number of lights at the last sort.
     sorted: u32,
@@ -101,7 +99,6 @@ impl Living {
             is_expired: false,
             is_sorted: AtomicBool::new(false),
             reach_m: 0.0,
-            is_recorded: AtomicBool::new(false),
             recorded: Arc::default(),
             sorted: 0,
             slots: 0,
@@ -195,7 +192,7 @@ impl Living {
         self.uploaded_bytes = 0;
         self.slots = lights.capacity;
         let sorts = self.next_sorts(lights.bounds, travel, lights.capacity);
-        if std::mem::take(self.is_recorded.get_mut()) {
+        if self.recorded.is_recorded() {
             self.reach_m = 0.0;
         }
         self.reach_m = (self.reach_m + lights.step_max_m.unwrap_or(f32::MAX)).min(f32::MAX);
@@ -213,8 +210,12 @@ impl Living {
     }
 
     /// Compiles kernels for other kinds of lights than those of the frame.
-    pub(super) fn compile_ahead(&mut self, gpu: &Gpu, kind: LightKinds) -> Result<(), AssignError> {
-        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kind))
+    pub(super) fn compile_ahead(
+        &mut self,
+        gpu: &Gpu,
+        kinds: LightKinds,
+    ) -> Result<(), AssignError> {
+        self.sorter.as_mut().map_or(Ok(()), |(sorter, _)| sorter.compile_ahead(gpu, kinds))
     }
 
     /// Whether the next frame sorts `lights` lights in a box. It does so when it is time, and if the frame
@@ -261,7 +262,6 @@ impl Living {
         }
         let sorts = self.age == Some(0);
         sorter.record(sorts, passes);
-        self.is_recorded.store(true, Ordering::Relaxed);
         self.recorded.record();
         if sorts {
             self.is_sorted.store(true, Ordering::Relaxed);

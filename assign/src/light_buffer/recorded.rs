@@ -24,6 +24,16 @@ impl RecordedLights {
     pub(crate) fn record(&self) {
         self.recorded.store(self.given.load(Ordering::Relaxed), Ordering::Relaxed);
     }
+
+    /// Whether the lights that were given last were recorded.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.has_recorded(self.given.load(Ordering::Relaxed))
+    }
+
+    /// Whether the lights of this number, or later ones, were recorded.
+    fn has_recorded(&self, given: u64) -> bool {
+        self.recorded.load(Ordering::Relaxed) >= given
+    }
 }
 
 /// The lights of one frame.
@@ -41,7 +51,7 @@ impl FrameLights {
 
     /// Checks that these lights, or later ones, were recorded.
     pub(crate) fn check(&self) -> Result<(), AssignError> {
-        let recorded = self.lights.recorded.load(Ordering::Relaxed);
-        if recorded >= self.given { Ok(()) } else { Err(AssignError::LightsNotRecorded) }
+        let is_recorded = self.lights.has_recorded(self.given);
+        if is_recorded { Ok(()) } else { Err(AssignError::LightsNotRecorded) }
     }
 }

@@ -75,7 +75,7 @@ pub struct CompareArgs {
 
     /// Light by a point each area light that looks smaller than X steradians, 1e-9 to 6: lossy
     ///
-    /// On surfaces smoother than a roughness of 0.71 the solid angle shrinks with the specular lobe.
+    /// On surfaces smoother than a roughness of 0.71, X shrinks with the specular lobe.
     #[arg(long, value_name = "X", value_parser = values::number_from(1e-9, 6.0), allow_hyphen_values = true, help_heading = SHADING, hide_short_help = true, conflicts_with = "operations")]
     pub area_lod: Option<f64>,
 

@@ -11,7 +11,7 @@ const MAX_SHORT_LINES: usize = 60;
 const MAX_FIRST_LINES: usize = 50;
 
 /// The most lines of the long help of `compare`, which has the most options.
-const MAX_LONG_LINES: usize = 404;
+const MAX_LONG_LINES: usize = 396;
 
 /// The most columns of a line of help.
 const MAX_COLUMNS: usize = 100;

@@ -5,7 +5,8 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 
-/// Accepts the names of these values. `--help` shows the line beside each value.
+/// Accepts the names of these values. `--help` shows the line beside each value, and where all lines are empty, only the
+/// names.
 pub(super) fn named<T>(
     values: impl IntoIterator<Item = (T, &'static str)>,
     name: fn(T) -> &'static str,
@@ -14,7 +15,10 @@ where
     T: Copy + Send + Sync + 'static,
 {
     let values: Vec<(T, &'static str)> = values.into_iter().collect();
-    let shown = values.iter().map(|(value, help)| PossibleValue::new(name(*value)).help(*help));
+    let shown = values.iter().map(|(value, help)| {
+        let shown = PossibleValue::new(name(*value));
+        if help.is_empty() { shown } else { shown.help(*help) }
+    });
     PossibleValuesParser::new(shown.collect::<Vec<_>>()).try_map(move |text| {
         let known = values.iter().find(|(value, _)| name(*value) == text);
         known.map(|(value, _)| *value).ok_or("one of the listed names")

@@ -90,6 +90,8 @@ pub struct StageArgs {
     pub areas: f64,
 
     /// Outlines of the scattered area lights
+    ///
+    /// both is half rectangles, half polygons of 3 to 10 vertices; all is a fifth of each. Lines are tubes, 10 to 50 times as long as wide.
     #[arg(long, value_name = "WHICH", default_value = "both", value_parser = named(OUTLINES, Outlines::name), help_heading = SCATTERED, hide_short_help = true)]
     pub outlines: Outlines,
 
@@ -177,13 +179,13 @@ pub enum LightBox {
 }
 
 const OUTLINES: [(Outlines, &str); 7] = [
-    (Outlines::Both, "Half rectangles, half polygons"),
-    (Outlines::Rectangles, "Rectangles"),
-    (Outlines::Polygons, "Polygons of 3 to 10 vertices"),
-    (Outlines::Discs, "Discs"),
-    (Outlines::Spheres, "Spheres"),
-    (Outlines::Lines, "Lines: tubes that are 10 to 50 times as long as wide"),
-    (Outlines::All, "A fifth each of rectangles, polygons, discs, spheres and lines"),
+    (Outlines::Both, ""),
+    (Outlines::Rectangles, ""),
+    (Outlines::Polygons, ""),
+    (Outlines::Discs, ""),
+    (Outlines::Spheres, ""),
+    (Outlines::Lines, ""),
+    (Outlines::All, ""),
 ];
 
 const RADII: [(Radii, &str); 3] = [

@@ -218,10 +218,13 @@ impl Reader<'_> {
             return Err(contradiction(self.id, earlier, &segment, &reason));
         }
         let parameters = numbers(&segment, self.row.parameters.len());
-        self.options.parameters = parameters.ok_or_else(|| match self.row.parameters {
-            [] => refuse(self.id, self.row, &segment),
-            names if starts_with_digit(&segment) => faulty(self.id, &segment, &names.join(" x ")),
-            _ => refuse(self.id, self.row, &segment),
+        let names = self.row.parameters;
+        self.options.parameters = parameters.ok_or_else(|| {
+            if !names.is_empty() && starts_with_digit(&segment) {
+                faulty(self.id, &segment, &names.join(" x "))
+            } else {
+                refuse(self.id, self.row, &segment)
+            }
         })?;
         Ok(())
     }

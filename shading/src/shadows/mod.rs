@@ -42,8 +42,9 @@
 //! behind the triangle's plane at the sample. So no plane with the sample in front of it hides the sample, such as the
 //! wall beside it.
 //!
-//! Both move a plane sideways by about a texel, whatever its slope. So light cannot pass a wall that is thicker than
-//! two texels, `4 depth / px`, or as many more as the filter is wide. The offset of a sample follows the shading
+//! Both move a plane sideways by about a texel, whatever its slope. Comparing leaves a slack of `depth / 1024` for what
+//! rasterisers round ([`plan`]). So light cannot pass a wall that is thicker than two texels and this slack,
+//! `4 depth / px + depth / 1024`, or as many more texels as the filter is wide. The offset of a sample follows the shading
 //! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
 //!
 //! # Subdivision

@@ -10,13 +10,13 @@ use crate::study::manifest::Done;
 use crate::study::shadows::cells::{adaptive, distance_m, fell_back, maps, moving_ms, on_software};
 use crate::study::shadows::jobs::APPROACH;
 
+use super::SOFTWARE;
+
 /// The paper's GPU.
 const GPU: &str = "RTX 3070";
 
 /// The paper's choice: the test looks at one pixel in so many along each axis.
 const DOWN: u32 = 8;
-
-const SOFTWARE: &str = "times of a software adapter are not those of a GPU";
 
 const MISSING: &str = "adaptive and fixed maps at the same distances";
 

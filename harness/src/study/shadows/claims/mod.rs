@@ -10,6 +10,9 @@ use self::maps::{BELOW, FILTER, LARGE_ATLAS, SMALL_ATLAS, TURN};
 use self::times::TIME;
 use crate::study::claims::{Answer, Check, Paper};
 
+/// Why a software adapter decides no claim on times.
+const SOFTWARE: &str = "times of a software adapter are not those of a GPU";
+
 /// Dobetsberger 2025, chapter 6.
 pub(crate) const PAPER: Paper = Paper {
     name: "the engine paper",

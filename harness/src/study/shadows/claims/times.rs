@@ -8,6 +8,8 @@ use crate::study::manifest::Done;
 use crate::study::shadows::cells::{atlas, atlases, fell_back, maps, on_software};
 use crate::study::shadows::jobs::MAPS;
 
+use super::SOFTWARE;
+
 /// The time to shade by the number of maps in an atlas of this side, ascending, ms.
 fn shade_ms(done: &Done, scene: &str, atlas_px: u32) -> Vec<(u32, f64)> {
     let time = |record: &Record| {
@@ -32,7 +34,7 @@ pub(crate) const TIME: Check = Check {
                 one number of maps to the next",
     decide: |done, scene| {
         if on_software(done) {
-            return Answer::undecided("times of a software adapter are not those of a GPU");
+            return Answer::undecided(SOFTWARE);
         }
         let sides = atlases(done, scene);
         let (Some(small), Some(large)) = (sides.first(), sides.last()) else {
