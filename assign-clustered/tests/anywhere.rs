@@ -35,7 +35,8 @@ fn clusters_lose_no_light_in_front_of_surfaces() {
 
 #[test]
 fn look_ups_that_no_frame_stated_lose_no_light() {
-    for variant in FOUND_FROM_SAMPLES {
+    let found_from_view = (Bounds::Implicit, Occupancy::Dense);
+    for variant in FOUND_FROM_SAMPLES.into_iter().chain([found_from_view]) {
         conformance::run_unstated(&clustered(options(variant))).expect("conforms");
     }
     let sparse = options((Bounds::Explicit, Occupancy::Sparse));

@@ -79,9 +79,13 @@ fn explicit_tiles_conform_in_front_of_surfaces() {
 /// No buffer keeps the ranges of T-E1, so its look-ups cannot ask whether they hold a sample.
 #[test]
 fn look_ups_that_no_frame_stated_lose_no_light() {
-    for depths in
-        [TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ, TileDepths::Sliced]
-    {
+    for depths in [
+        TileDepths::Implicit,
+        TileDepths::Explicit,
+        TileDepths::HalfZ,
+        TileDepths::ModifiedHalfZ,
+        TileDepths::Sliced,
+    ] {
         let make = tiled(depths, "16x16", CullSettings::default());
         conformance::run_unstated(&make).expect("conforms");
     }

@@ -53,6 +53,7 @@ impl Bench {
         let seed = args.scene.starts_with(PREFIX).then_some(args.seed);
         let key =
             format!("{} {} {} {bounce} {seed:?}", args.scene, args.scene_scale, args.replicate);
+        let key = format!("{key} {:?}", args.roughness);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 // The maps are those of other lights.

@@ -151,6 +151,7 @@ pub fn record(
             scene_hash: stage.scene_hash.clone(),
             path_hash: args.path.then(|| stage.scene.path_hash()),
             scene_scale: args.stage.scene_scale,
+            roughness: args.stage.roughness,
             triangles: stage.scene.triangle_count(),
             mode,
             lights: count,

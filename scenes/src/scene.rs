@@ -267,6 +267,27 @@ impl Scene {
         self
     }
 
+    /// The scene with one roughness on all surfaces, and without metal: textures of roughness and metalness are left out.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::OutOfRange`] unless `roughness` is within 0..=1.
+    pub fn with_roughness(mut self, roughness: f64) -> Result<Self, SceneError> {
+        if !(0.0..=1.0).contains(&roughness) {
+            return Err(SceneError::OutOfRange {
+                field: "roughness",
+                value: roughness.to_string(),
+                accepted: "between 0 and 1",
+            });
+        }
+        for material in &mut self.materials {
+            material.roughness = roughness as f32;
+            material.metallic = 0.0;
+            material.metallic_roughness_texture = None;
+        }
+        Ok(self)
+    }
+
     /// The scene, uniformly scaled about the origin.
     ///
     /// Geometry, boxes, cameras, the path and the positions of the scene's own lights, also of

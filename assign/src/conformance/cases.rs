@@ -152,13 +152,27 @@ pub const CASES: &[Case] = &[
     case("quarantine", "faulty lights among sound ones", quarantine),
 ];
 
-/// Cases of what all strategies share. They take long, so [`run`](super::run) leaves them out, and one
-/// strategy runs each of them by [`run_case`](super::run_case).
-pub const SHARED_CASES: &[Case] = &[case(
-    "three-levels-of-nodes",
-    "a hierarchy of three levels, for a strategy that reads it",
-    living::sparse,
-)];
+/// Cases that [`run`](super::run) leaves out: what all strategies share and takes long, so that one strategy runs it
+/// by [`run_case`](super::run_case), and what only [`run_unstated`](super::run_unstated) asks for.
+pub const SHARED_CASES: &[Case] = &[
+    case(
+        "three-levels-of-nodes",
+        "a hierarchy of three levels, for a strategy that reads it",
+        living::sparse,
+    ),
+    case(
+        BEYOND_PLANES,
+        "samples and lights in front of the near plane and behind the far plane",
+        |r| {
+            let stage = in_room(r, &View { far_m: Some(40.0), ..default_view() }).beyond_planes();
+            Plan::Still(on(r, stage, 400, |r, s, n| mix(r, s, n, (0.01, 1.0), Kinds::Points)))
+        },
+    ),
+];
+
+/// The case of samples that only [`run_unstated`](super::run_unstated) looks up. A fragment that covers only some of a
+/// pixel's samples is shaded at the pixel's centre, to which its surface is extrapolated: beyond the planes, too.
+pub(super) const BEYOND_PLANES: &str = "beyond-planes";
 
 /// Makes lights for a stage.
 type Lights = fn(&mut Rng, &Stage, usize) -> Vec<Light>;

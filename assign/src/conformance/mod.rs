@@ -70,6 +70,7 @@ mod violation;
 
 use std::sync::OnceLock;
 
+use cases::BEYOND_PLANES;
 pub use cases::{CASES, Case, SHARED_CASES};
 pub use counted_passes::CountedPasses;
 use faulty::{Fault, Faulty};
@@ -121,12 +122,18 @@ pub fn run_in_front(make: &Make<'_>) -> Result<Report, ConformanceError> {
 
 /// The cases of [`run_unstated`]: among them, frames in which groups hold samples that held none before, and the
 /// reverse. The first ones look up all samples of the depth buffer, so they show which groups hold samples.
-const UNSTATED_CASES: [&str; 5] =
-    ["33-lights", "resize", "camera-teleports", "light-count-changes", "lights-from-gpu"];
+const UNSTATED_CASES: [&str; 6] = [
+    "33-lights",
+    "resize",
+    "camera-teleports",
+    "light-count-changes",
+    "lights-from-gpu",
+    BEYOND_PLANES,
+];
 const WHOLE_CASES: usize = 4;
 
-/// Runs some cases with samples at any depth in frames that state only those on opaque surfaces. No light may be
-/// lost: with [`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere), look-ups that no list serves read all
+/// Runs some cases with samples at any depth, and beyond the near and far planes, in frames that state only those on
+/// opaque surfaces. No light may be lost: with [`Shader::looks_up_anywhere`](crate::Shader::looks_up_anywhere), look-ups that no list serves read all
 /// lights, and without, those in groups without samples do. A refusal is an error.
 pub fn run_unstated(make: &Make<'_>) -> Result<Report, ConformanceError> {
     let cases = UNSTATED_CASES.iter().map(|name| find(name).copied());

@@ -334,6 +334,25 @@ impl Stage {
         }
     }
 
+    /// Moves some samples in the open in front of the near plane or behind the far plane, and drops all others.
+    pub(super) fn beyond_planes(mut self) -> Self {
+        let at_far = self.view.depth_clear();
+        let outwards = 1.0 - 2.0 * at_far;
+        let open = self.samples.split_off(self.on_surfaces);
+        self.samples.clear();
+        self.on_surfaces = 0;
+        for (ix, sample) in open.into_iter().step_by(4).enumerate() {
+            let is_near = self.view.far_m.is_none() || ix.is_multiple_of(2);
+            // With reversed depth and a near plane much nearer than the far plane: at half the distance of the near plane,
+            // and a little behind the far plane.
+            let depth_clip =
+                if is_near { 1.0 - at_far + outwards } else { at_far - 2e-4 * outwards };
+            let point = self.rebuilt(sample.pixel, depth_clip);
+            self.samples.push(Sample { depth_clip, point, ..sample });
+        }
+        self
+    }
+
     /// Whether no surface lies between the eye and a sample.
     pub(super) fn is_in_front(&self, sample: &Sample) -> bool {
         let [x, y] = sample.pixel;

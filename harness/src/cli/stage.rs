@@ -46,11 +46,13 @@ pub struct StageArgs {
     #[arg(long, display_order = 5, value_name = "POSE", allow_hyphen_values = true)]
     pub camera: Option<Camera>,
 
-    /// Factor on the size of the scene and of its own lights, 1e-6 to 1e6
-    ///
-    /// Scattered lights keep their size.
+    /// Factor on the size of the scene and of its own lights, not of scattered ones; 1e-6 to 1e6
     #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale, help_heading = SCENE, hide_short_help = true)]
     pub scene_scale: f64,
+
+    /// Give all surfaces this roughness, 0 to 1, and no metal
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = values::number_from(0.0, 1.0), help_heading = SCENE, hide_short_help = true)]
+    pub roughness: Option<f64>,
 
     /// Draw N x N copies of the scene side by side, with all their lights; 1 to 64
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 64), help_heading = SCENE, hide_short_help = true)]

@@ -56,6 +56,12 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
         varies(|r| r.setting.mode.name().to_owned()),
         varies(|r| format!("at {}\u{d7}{}", r.setting.width, r.setting.height)),
         varies(|r| format!("at scene scale {}", rounded(r.setting.scene_scale))),
+        varies(|r| {
+            r.setting.roughness.map_or_else(
+                || "of the file's roughness".to_owned(),
+                |r| format!("at roughness {}", rounded(r)),
+            )
+        }),
         varies(|r| format!("at radius scale {}", rounded(r.setting.radius_scale))),
         varies(|r| format!("from seed {}", r.setting.seed)),
     ]

@@ -53,6 +53,9 @@ pub(crate) fn setting(record: &Record) -> String {
     if record.setting.scene_scale != 1.0 {
         parts.push(format!("scene scale {}", rounded(record.setting.scene_scale)));
     }
+    if let Some(roughness) = record.setting.roughness {
+        parts.push(format!("all surfaces of roughness {}", rounded(roughness)));
+    }
     if record.setting.radius_scale != 1.0 {
         parts.push(format!("radius scale {}", rounded(record.setting.radius_scale)));
     }

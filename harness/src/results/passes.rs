@@ -90,16 +90,18 @@ impl Passes {
 
     /// The time per frame of the passes that are counted by name and kind, ms.
     pub fn per_frame_where(&self, is_counted: impl Fn(&str, PassKind) -> bool) -> Vec<f64> {
-        let of_kind = || {
-            self.0
-                .iter()
-                .filter(|(name, times)| is_counted(name, times.kind))
-                .map(|(_, times)| times)
-        };
-        let frames = of_kind().map(|times| times.samples.len()).min();
-        (0..frames.unwrap_or(0))
-            .map(|frame| of_kind().map(|times| times.samples[frame]).sum())
-            .collect()
+        let counted: Vec<&[f64]> = self
+            .0
+            .iter()
+            .filter(|(name, times)| is_counted(name, times.kind))
+            .map(|(_, times)| times.samples.as_slice())
+            .collect();
+        let frames = counted.iter().map(|samples| samples.len()).min();
+        let mut sums = vec![0.0; frames.unwrap_or(0)];
+        for samples in counted {
+            sums.iter_mut().zip(samples).for_each(|(sum, sample)| *sum += sample);
+        }
+        sums
     }
 
     /// Bills passes again, by name.

@@ -20,6 +20,9 @@ pub struct Setting {
     pub path_hash: Option<String>,
     /// Factor on the scene's size and its own lights; scattered lights keep theirs.
     pub scene_scale: f64,
+    /// With `--roughness`: that of all surfaces, which are no metal then; absent without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<f64>,
     /// Drawn triangles; every instance counts.
     pub triangles: u64,
     /// How pixels were lit.

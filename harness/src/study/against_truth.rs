@@ -27,13 +27,14 @@ pub(crate) type Compared = [(&'static str, &'static str)];
 pub(crate) enum TruthOf {
     /// The only one of the scene. Its lights may be others: virtual ones stand for those of the truth.
     Scene,
-    /// That of as many lights.
-    Lights,
+    /// The one whose job has the same values of these options.
+    Alike(&'static [&'static str]),
 }
 
-/// The truth of one number of lights.
+/// A truth image.
 struct Truth {
-    lights: u64,
+    /// The options that [`TruthOf::Alike`] compares, as its job has them.
+    options: Vec<Option<String>>,
     image: Rc<HdrImage>,
     exposure: f32,
 }
@@ -67,24 +68,24 @@ pub(crate) fn compare_with_truths(
     for (scene, (section, truth)) in
         scenes.iter().flat_map(|scene| compared.iter().map(move |pair| (scene, *pair)))
     {
-        let truths = truths(done, scene, truth)?;
-        let truth_of = |lights: u64| {
-            truths.iter().find(|truth| by == TruthOf::Scene || truth.lights == lights)
-        };
-        let jobs: Vec<String> =
-            done.section(scene, section).map(|(job, _)| job.name.clone()).collect();
-        for job in jobs {
+        let truths = truths(done, scene, truth, by)?;
+        let jobs: Vec<(String, Vec<Option<String>>)> = done
+            .section(scene, section)
+            .map(|(job, _)| (job.name.clone(), options(job, by)))
+            .collect();
+        for (job, options) in jobs {
+            let Some(truth) = truths.iter().find(|truth| truth.options == options) else {
+                continue;
+            };
             let Some(folder) = done.folders.get(&job) else { continue };
             let Some(results) = done.results.get_mut(&job) else { continue };
             let mut store = Store::new(folder);
             if let Some(image) = &mut results.truth_image
-                && let Some(truth) = truth_of(image.lights)
                 && let Some(found) = truth.compare(&mut store, Some(&image.raw))?
             {
                 image.against_errors = found;
             }
             for record in &mut results.records {
-                let Some(truth) = truth_of(record.setting.lights) else { continue };
                 let raw = record.image.files.raw.as_deref();
                 if let Some(found) = truth.compare(&mut store, raw)? {
                     record.image.truth_errors = found;
@@ -96,7 +97,12 @@ pub(crate) fn compare_with_truths(
 }
 
 /// The truth images of a scene and a section that are there.
-fn truths(done: &Done, scene: &str, section: &str) -> Result<Vec<Truth>, HarnessError> {
+fn truths(
+    done: &Done,
+    scene: &str,
+    section: &str,
+    by: TruthOf,
+) -> Result<Vec<Truth>, HarnessError> {
     let mut all = Vec::new();
     for (job, results) in done.section(scene, section) {
         let (Some(truth), Some(folder)) = (&results.truth_image, done.folders.get(&job.name))
@@ -104,9 +110,15 @@ fn truths(done: &Done, scene: &str, section: &str) -> Result<Vec<Truth>, Harness
             continue;
         };
         let Some(image) = Store::new(folder).image(Some(&truth.raw))? else { continue };
-        all.push(Truth { lights: truth.lights, image, exposure: truth.exposure as f32 });
+        all.push(Truth { options: options(job, by), image, exposure: truth.exposure as f32 });
     }
     Ok(all)
+}
+
+/// What decides which truth image belongs to a job.
+fn options(job: &Job, by: TruthOf) -> Vec<Option<String>> {
+    let TruthOf::Alike(names) = by else { return Vec::new() };
+    names.iter().map(|name| job.option(name).map(str::to_owned)).collect()
 }
 
 /// The truth image of a scene, with its job.

@@ -17,6 +17,7 @@ use super::scene::StudyScene;
 /// - `range_share`: the longest range as a share of the scene's diagonal, within the other sweeps. One range
 ///   for all lights is half as long.
 /// - `atlas_px`: the side of the atlas that the maps of `shadows` fill, texels.
+/// - `roughness`: that of all surfaces, of truth images of `shadows`.
 /// - `distance_m`: from the camera to the light that it approaches in `shadows`, metres.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]

@@ -71,6 +71,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             scene_hash: "5f0c1b7e9ad24410".to_owned(),
             path_hash: None,
             scene_scale: 1.0,
+            roughness: None,
             triangles: 262_144,
             mode,
             lights: 1_000,

@@ -12,6 +12,9 @@ use crate::{
     study::{against_truth::TRUTH, job::Job, scene::StudyScene},
 };
 
+use super::lod::{self, LOD, LOD_TRUTH};
+use super::roughness::{self, SEPARATED_BY, TRUTH_BY};
+
 /// The section of P, the exact visible share times the exact light without shadows.
 pub(crate) const SEPARATED: &str = "separated";
 /// Without shadows.
@@ -37,7 +40,7 @@ pub(crate) const ADAPTIVE: &str = "adaptive";
 pub(crate) const APPROACH: &str = "approach";
 
 /// The sections whose images are compared, each with the section of its truth.
-pub(crate) const AGAINST: [(&str, &str); 8] = [
+pub(crate) const AGAINST: [(&str, &str); 10] = [
     (SEPARATED, TRUTH),
     (NONE, TRUTH),
     (MAPS, TRUTH),
@@ -46,7 +49,12 @@ pub(crate) const AGAINST: [(&str, &str); 8] = [
     (LIGHTS, LIGHTS_TRUTH),
     (ADAPTIVE, TRUTH),
     (PIPELINE, UNSHADOWED),
+    (SEPARATED_BY, TRUTH_BY),
+    (LOD, LOD_TRUTH),
 ];
+
+/// The options by which a truth is that of an image.
+pub(crate) const ALIKE: &[&str] = &["--lights", "--size", "--roughness"];
 
 /// The sections whose images are compared with the truth with shadows.
 pub(crate) const COMPARED: [&str; 6] = [NONE, MAPS, SIDES, TAPS, LIGHTS, ADAPTIVE];
@@ -81,7 +89,7 @@ pub(crate) struct Extent {
     pub(crate) frames: &'static str,
     pub(crate) warmup: &'static str,
     /// Samples per pixel of T and P. From 64 on, T's rays only estimate the visible share.
-    samples: &'static str,
+    pub(crate) samples: &'static str,
     /// Sides of atlases, texels; the last one is that of `LIGHTS`.
     atlases: &'static [u32],
     maps: &'static [u32],
@@ -94,13 +102,17 @@ pub(crate) struct Extent {
     lights: &'static [u32],
     /// The size of images of `lights`, and the samples per pixel of their truth: T of many lights takes long.
     lights_size: Size,
-    lights_samples: &'static str,
+    pub(crate) lights_samples: &'static str,
     /// Maps of each of these lights.
     shared_maps: u32,
     /// The side of maps of subdivided lights.
     adaptive_px: u32,
     /// The test for bands looks at one pixel in so many along each axis.
     downs: &'static [u32],
+    /// Roughnesses of all surfaces, for P against T.
+    pub(crate) roughnesses: &'static [f64],
+    /// Solid angles below which area lights become points, steradians.
+    pub(crate) solid_angles: &'static [&'static str],
 }
 
 pub(crate) const FULL: Extent = Extent {
@@ -119,6 +131,8 @@ pub(crate) const FULL: Extent = Extent {
     shared_maps: 25,
     adaptive_px: 256,
     downs: &[1, 2, 4, 8, 16],
+    roughnesses: &[0.1, 0.2, 0.4, 0.7, 1.0],
+    solid_angles: &["0.003", "0.01", "0.03", "0.1", "0.3", "1"],
 };
 
 pub(crate) const QUICK: Extent = Extent {
@@ -137,7 +151,22 @@ pub(crate) const QUICK: Extent = Extent {
     shared_maps: 9,
     adaptive_px: 64,
     downs: &[1, 8],
+    roughnesses: &[0.2, 1.0],
+    solid_angles: &["0.01", "0.3"],
 };
+
+/// How many lights jobs have, and the options of their scene, size and ranges.
+pub(crate) struct Lights {
+    pub(crate) count: String,
+    options: Vec<String>,
+}
+
+impl Lights {
+    /// The options of their scene, size and ranges.
+    pub(crate) fn options(&self) -> Vec<&str> {
+        self.options.iter().map(String::as_str).collect()
+    }
+}
 
 /// The squares of an atlas that one map of a one-sided rectangle takes: one face and four halves.
 const SQUARES_PER_MAP: u32 = 3;
@@ -222,6 +251,9 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
         [drawn, alike(range_m)].concat()
     };
     let (many, lit) = (lit(extent.lights_size), lit(extent.size));
+    let small = |count: u32| Lights { count: count.to_string(), options: many.clone() };
+    let most = extent.lights.last().copied().unwrap_or(FEW);
+    let (small, crowd) = (small(FEW), small(most));
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let many: Vec<&str> = many.iter().map(String::as_str).collect();
     let few = FEW.to_string();
@@ -291,6 +323,8 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
             jobs.push(job.with(DISTANCE, &stop.distance_m.to_string()));
         }
     }
+    jobs.extend(roughness::jobs(scene, extent, &small));
+    jobs.extend(lod::jobs(scene, extent, &crowd));
     jobs
 }
 
@@ -319,8 +353,7 @@ mod tests {
                     continue;
                 };
                 let alike = |other: &Job| {
-                    let options = ["--lights", "--size"];
-                    options.iter().all(|option| other.option(option) == job.option(option))
+                    ALIKE.iter().all(|option| other.option(option) == job.option(option))
                 };
                 let truths = jobs.iter().filter(|other| other.section == *truth);
                 assert_eq!(truths.filter(|other| alike(other)).count(), 1, "{}", job.name);

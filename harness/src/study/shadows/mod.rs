@@ -10,8 +10,10 @@
 mod cells;
 mod claims;
 mod jobs;
+mod lod;
 mod occlusion;
 mod page;
+mod roughness;
 
 use super::against_truth::{TruthOf, compare_with_truths};
 use super::job::Job;
@@ -29,7 +31,7 @@ pub(crate) const STUDY: Study = Study {
     scenes: atrium,
     jobs: all_jobs,
     motion: TakesMotion::None("shadow maps are drawn once, so the lights must stand still"),
-    after_run: |done| compare_with_truths(done, &jobs::AGAINST, TruthOf::Lights),
+    after_run: |done| compare_with_truths(done, &jobs::AGAINST, TruthOf::Alike(jobs::ALIKE)),
     headline: page::headline,
     findings: page::findings,
     front: |_| Html::default(),

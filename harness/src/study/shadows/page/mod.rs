@@ -8,7 +8,7 @@ mod table;
 use self::charts::{Sweep, swept};
 use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, pipeline_of, steps};
 use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
-use super::occlusion;
+use super::{lod, occlusion, roughness};
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
 use crate::study::data::{Entry, entries};
@@ -105,6 +105,8 @@ pub(crate) fn parts(
     parts.push(Part::new("table", "All figures", TABLE_NOTE, body));
     let body = approach::table(done, scene);
     parts.push(Part::new(APPROACH, "Subdivision as the camera approaches", APPROACH_NOTE, body));
+    parts.push(roughness::part(done, scene, charts));
+    parts.push(lod::part(done, scene, charts));
     parts.push(occlusion::part(done, scene));
     parts.push(Part::new(
         "pictures",
@@ -173,6 +175,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
             difference(floor)
         ));
     }
+    found.extend(roughness::finding(done, scene));
+    found.extend(lod::finding(done, scene));
     found.extend(occlusion::finding(done, scene));
     found
 }

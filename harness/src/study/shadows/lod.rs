@@ -1,0 +1,153 @@
+//! Far area lights as points (`--area-lod`): what the image loses, by the solid angle below which a light is a point.
+//!
+//! The lights cast no shadows, so that errors come from the points alone, beside those of the pipeline.
+
+use super::cells::{METRIC, error, on_software};
+use super::jobs::{Extent, Lights};
+use crate::{
+    chart::{Axis, Marks, Point, Scale, Series, XyChart},
+    image_errors::ERROR_METRICS,
+    report::{
+        column::Column,
+        format::{difference, significant},
+        markup::{Html, html},
+        table::{Look, Row, Table},
+    },
+    results::{Errors, Record},
+    strategy::BASELINE,
+    study::{
+        claims::order::Order,
+        data::{Entry, entries},
+        job::Job,
+        manifest::Done,
+        page::{error_columns::error_columns, figure::Charts, part::Part},
+        scene::StudyScene,
+    },
+};
+
+/// The section of its images.
+pub(crate) const LOD: &str = "lod";
+/// The section of their truth, without shadows.
+pub(crate) const LOD_TRUTH: &str = "truth-lod";
+
+/// The jobs of a scene: the truth, all lights with their outlines, and each solid angle.
+pub(crate) fn jobs(scene: &StudyScene, extent: &Extent, lights: &Lights) -> Vec<Job> {
+    let drawn = [&lights.options()[..], &["--lights", &lights.count]].concat();
+    let truth = [&["truth"], &drawn[..], &["--samples", extent.lights_samples]].concat();
+    let compared = ["--strategies", BASELINE, "--truth", "none"];
+    let timed = ["--frames", extent.frames, "--warmup", extent.warmup];
+    let compare = |variant: &str, more: &[&str]| {
+        let words = [&["compare"], &drawn[..], &compared, &timed, more].concat();
+        Job::new(scene, LOD, variant, &words)
+    };
+    let mut jobs = vec![Job::new(scene, LOD_TRUTH, "", &truth), compare("off", &[])];
+    jobs.extend(extent.solid_angles.iter().map(|angle| compare(angle, &["--area-lod", angle])));
+    jobs
+}
+
+const NOTE: &str = "An area light that looks smaller than the solid angle is lit as a point. The dashed line is the image in \
+     which all lights keep their outlines. Errors are those against the truth without shadows. Times of a software adapter \
+     say nothing of a GPU.";
+
+/// The part of a scene's page; empty without records.
+pub(crate) fn part(done: &Done, scene: &str, charts: &mut Charts) -> Part {
+    let all = entries(done, scene, LOD);
+    let mut body = Html::default();
+    if !all.is_empty() {
+        body = chart(scene, &all, charts);
+        body += table(&all);
+    }
+    Part::new(LOD, "Far area lights as points", NOTE, body)
+}
+
+/// The image in which all lights keep their outlines.
+fn whole<'a>(all: &[Entry<'a>]) -> Option<&'a Record> {
+    all.iter().map(|entry| entry.record).find(|record| record.setting.area_lod.is_none())
+}
+
+fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
+    let Some(metric) = ERROR_METRICS.iter().find(|known| known.id == METRIC) else {
+        return Html::default();
+    };
+    let point = |entry: &Entry<'_>| {
+        let angle = entry.record.setting.area_lod?;
+        let error = error(entry.record, metric.id)?;
+        let tip = format!("{} sr\n{} {}", significant(angle), metric.head, difference(error));
+        Some(Point::new(angle, error, tip))
+    };
+    let mut points: Vec<Point> = all.iter().filter_map(point).collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    if points.is_empty() {
+        return Html::default();
+    }
+    let ends = [points.first(), points.last()].map(|point| point.map(|point| point.x));
+    let mut series =
+        vec![Series::new("points below the angle", "series-0", Marks::LineAndPoints, points)];
+    if let Some(floor) = whole(all).and_then(|record| error(record, metric.id)) {
+        let tip = format!("all outlines\n{} {}", metric.head, difference(floor));
+        let ends = ends.into_iter().flatten().map(|x| Point::new(x, floor, tip.clone()));
+        series.push(Series::new("all outlines", "", Marks::Dashed, ends.collect()));
+    }
+    let axes = [
+        Axis::new("A light is a point below", "sr", Scale::Log),
+        Axis::new(format!("{} against the truth", metric.head), metric.unit, Scale::Log),
+    ];
+    let title = format!("Error of far area lights as points: {}", metric.head);
+    let mut body =
+        charts.xy(&format!("{scene}-{LOD}-{}", metric.id), &XyChart::new(title, axes, series));
+    body += html!("<p class=\"note\">{}</p>\n", metric.about);
+    body
+}
+
+fn table(all: &[Entry<'_>]) -> Html {
+    fn errors_of<'r>(record: &'r Record) -> &'r Errors {
+        &record.image.truth_errors
+    }
+    let row = |entry: &Entry<'_>| {
+        let name = match entry.record.setting.area_lod {
+            Some(angle) => format!("points below {} sr{}", significant(angle), entry.mark()),
+            None => format!("all outlines{}", entry.mark()),
+        };
+        Row::new(name, entry.record.clone())
+    };
+    let mut columns: Vec<Column<'_, Record>> = error_columns(errors_of).collect();
+    columns.push(Column::ms("shade", |record: &Record| Some(record.times.shade_ms)).id("shade_ms"));
+    Table::new("image", columns, all.iter().map(row).collect())
+        .competing(|_| false)
+        .html("Far area lights as points", Look::Plain)
+}
+
+/// The largest solid angle whose error is not clearly above that of all outlines, and the shading time that it saves:
+/// times only where a GPU took them.
+pub(crate) fn finding(done: &Done, scene: &str) -> Option<String> {
+    let all = entries(done, scene, LOD);
+    let whole = whole(&all)?;
+    let floor = error(whole, METRIC)?;
+    let kept = all
+        .iter()
+        .filter_map(|entry| Some((entry.record.setting.area_lod?, entry.record)))
+        .filter(|(_, record)| {
+            error(record, METRIC)
+                .is_some_and(|error| Order::of_figures(floor, error) != Order::Less)
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let outlines = format!("all outlines have a FLIP of {} against the truth", difference(floor));
+    let Some((angle, record)) = kept else {
+        return Some(format!(
+            "In {scene}, {outlines}, and every tested solid angle of --area-lod raises it."
+        ));
+    };
+    let times = match on_software(done) {
+        true => String::new(),
+        false => format!(
+            " Shading then takes {} instead of {} ms.",
+            significant(record.times.shade_ms),
+            significant(whole.times.shade_ms)
+        ),
+    };
+    Some(format!(
+        "In {scene}, {outlines}. With points below {} sr (--area-lod) it is within 5 % of that ({}).{times}",
+        significant(angle),
+        difference(error(record, METRIC)?)
+    ))
+}
