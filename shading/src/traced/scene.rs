@@ -14,8 +14,9 @@ use crate::{
     reference::Surface,
 };
 
-/// The distance within which a position's triangle is searched, in multiples of [`offset`].
-const SEARCH: f64 = 8.0;
+/// How far from a position rebuilt from depth its triangle is looked for, as a share of the distance from the eye. An H200
+/// interpolates the depth of a triangle that is much larger than the view with errors above 2^-12 (`shadows/plan.rs`).
+const SEARCH: f64 = 1.0 / (1 << 9) as f64;
 
 /// The triangles of a scene in a hierarchy, with everything that the surface of a hit needs.
 pub struct TracedScene<'a> {
@@ -164,8 +165,9 @@ impl<'a> TracedScene<'a> {
         per_m2 * hit.distance_m.powi(2) / self.geometric_normal(hit).dot(direction).abs()
     }
 
-    /// A sample of a known surface. Its triangle is the one found near the position on the line of
-    /// sight. If none is found, the shading normal replaces the geometric one.
+    /// A sample of a known surface. Its triangle is the first one found near the position on the line of
+    /// sight. Rays start in front of this triangle, also where depth was rounded to a place behind it. If none is found, the
+    /// shading normal replaces the geometric one.
     pub(super) fn seen_sample(
         &self,
         position: DVec3,
@@ -173,19 +175,23 @@ impl<'a> TracedScene<'a> {
         eye: DVec3,
         to_eye: DVec3,
     ) -> SurfaceSample {
-        let offset_m = offset(position, eye.distance(position));
-        let search_m = SEARCH * offset_m;
+        let distance_m = eye.distance(position);
+        let offset_m = offset(position, distance_m);
+        let search_m = (SEARCH * distance_m).max(8.0 * offset_m);
         let origin = position + to_eye * search_m;
         let solid = |hit: &Hit| self.is_solid(hit) && self.is_drawn(hit);
         let hit = self.triangles.first(origin, -to_eye, 2.0 * search_m, solid);
-        let normal = hit.map_or(surface.normal, |hit| self.geometric_normal(&hit));
+        let normal = hit.as_ref().map_or(surface.normal, |hit| self.geometric_normal(hit));
+        let normal = towards(normal, to_eye);
+        let in_front_m = hit.map_or(0.0, |hit| search_m - hit.distance_m);
+        let behind_m = (to_eye * in_front_m).dot(normal).max(0.0);
         SurfaceSample {
             position,
             surface,
             emission: DVec3::ZERO,
             to_eye,
-            geometric_normal: towards(normal, to_eye),
-            offset_m,
+            geometric_normal: normal,
+            offset_m: offset_m + behind_m,
         }
     }
 
@@ -237,5 +243,35 @@ impl<'a> TracedScene<'a> {
     pub(super) fn geometric_normal(&self, hit: &Hit) -> DVec3 {
         let [a, b, c] = self.triangles.corners(hit.triangle);
         (b - a).cross(c - a).normalize_or(DVec3::Y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::Reflectance;
+
+    /// GPUs round the depth of large triangles to places a little behind them.
+    #[test]
+    fn a_position_a_little_behind_its_surface_sees_what_the_surface_sees() {
+        let scene = scenes::open("atrium").expect("the built-in scene");
+        let traced = TracedScene::new(&scene);
+        let eye = DVec3::new(0.0, 2.0, 1.0);
+        let direction = DVec3::new(0.05, -0.9, 0.1).normalize();
+        let (distance_m, normal) = traced.surface(eye, direction).expect("a floor");
+        let surface = Surface {
+            base_color: DVec3::ONE,
+            metallic: 0.0,
+            normal,
+            roughness: 1.0,
+            dielectric: Reflectance::default(),
+        };
+        let sees = |behind: f64| {
+            let position = eye + direction * distance_m * (1.0 + behind);
+            let sample = traced.seen_sample(position, surface, eye, -direction);
+            traced.sees(&sample, eye)
+        };
+        assert!(sees(0.0) && sees(1e-3) && sees(-1e-3));
+        assert!(!sees(1e-2), "nothing this far behind a surface is on it");
     }
 }
