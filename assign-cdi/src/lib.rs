@@ -93,7 +93,7 @@ mod vpl;
 
 pub use build_kernels::{BUILD_ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, RAY_CAST_WESL};
+pub use deep_images::{DeepImages, RAY_CAST_WESL, RayBuffers};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
 pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use image_space::{ImagesUniform, Triangles};

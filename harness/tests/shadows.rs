@@ -71,6 +71,7 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         occluder_bytes: None,
         draw_ms: None,
         adaptive: None,
+        deep: None,
     };
     assert_eq!((plain.len(), shadowed.len()), (6, 6));
     for (plain, shadowed) in plain.iter().zip(&shadowed) {

@@ -75,6 +75,7 @@ fn image(maps: u32, px: u32, taps: u32, flip: f64) -> Results {
         occluder_bytes: None,
         draw_ms: Some(3.25),
         adaptive: None,
+        deep: None,
     });
     record.image.truth_errors.insert("flip".into(), Some(flip));
     record.image.truth_errors.insert("rel_mse".into(), Some(10.0 * flip));
