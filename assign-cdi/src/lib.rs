@@ -20,6 +20,10 @@
 //! [`RangeCaster`] then casts rays from points on surfaces, in the pass `cdi-ranges`. A ray picks the direction
 //! nearest to its own and the pixel of its origin, and takes the first depth beyond the origin.
 //!
+//! Shadows ask less and more: whether a surface lies between two points. `package::segment` tells, and changes the pixel on
+//! the way, so that it ends at its second point. [`DeepImages::settle`] builds images that stay, and
+//! [`DeepImages::ray_buffers`] hands them to a renderer's own bind group.
+//!
 //! Two other ways to build and to store are there for comparison: [`Build::PerDirection`] and
 //! [`Storage::LinkedLists`].
 //!

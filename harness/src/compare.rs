@@ -97,8 +97,7 @@ pub fn compare_on(
     let finds_occluders = choices.iter().any(Choice::leaves_out_hidden);
     let images = Some(&args.stage.bounce.deep);
     let casting = Casting { cut: args.cut, finds_occluders, images };
-    let warning =
-        stage.cast_shadows(args.shadows, casting)?;
+    let warning = stage.cast_shadows(args.shadows, casting)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };

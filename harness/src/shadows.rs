@@ -111,8 +111,9 @@ impl Stage {
         let has_holes = self.scene.materials.iter().any(|one| one.alpha_cutoff.is_some());
         has_holes.then(|| {
             let model = figures.model;
-            let warning =
-                format!("--shadows {model}: rays take alpha masks as solid, so their holes cast shadows too");
+            let warning = format!(
+                "--shadows {model}: rays take alpha masks as solid, so their holes cast shadows too"
+            );
             say(format!("warning  {warning}"));
             warning
         })

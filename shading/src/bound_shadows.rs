@@ -6,10 +6,12 @@ use assign_cdi::{DeepImageSettings, DeepImages, RayBuffers};
 use crate::{
     ShadowModel,
     bound_maps::{BoundMaps, RECORDS_BINDING},
-    gbuffer_inputs::PIXELS_GROUP,
 };
 
-/// The first binding of `ray_cast.wesl` in group 2.
+/// The bind group of shadows.
+const GROUP: u32 = 2;
+
+/// The first binding of `ray_cast.wesl` in it.
 const RAYS_BINDING: u32 = 30;
 
 /// Which kind of shadows a layout binds.
@@ -102,6 +104,6 @@ impl BoundShadows {
 pub(crate) fn mount_rays<'a>(shader: Shader<'a>, images: Option<DeepImageSettings>) -> Shader<'a> {
     match images {
         None => shader,
-        Some(images) => DeepImages::mount_at(&images, shader, (PIXELS_GROUP, RAYS_BINDING)),
+        Some(images) => DeepImages::mount_at(&images, shader, (GROUP, RAYS_BINDING)),
     }
 }

@@ -6,7 +6,11 @@ use assign::{AssignError, Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, unifor
 use assign_cdi::DeepImageSettings;
 use bytemuck::{Pod, Zeroable};
 
-use crate::{LightingOptions, ShadingError, bound_shadows::{BoundShadows, ShadowKind}, ltc};
+use crate::{
+    LightingOptions, ShadingError,
+    bound_shadows::{BoundShadows, ShadowKind},
+    ltc,
+};
 
 /// Binding of `LightingUniform` in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
@@ -179,9 +183,10 @@ impl LightingInputs {
         Bound {
             table: self.table.is_some(),
             suns: self.suns.is_some(),
-            shadows: self.shadows.as_ref().map_or(ShadowKind::None, |shadows| {
-                ShadowKind::of(shadows.model())
-            }),
+            shadows: self
+                .shadows
+                .as_ref()
+                .map_or(ShadowKind::None, |shadows| ShadowKind::of(shadows.model())),
         }
     }
 

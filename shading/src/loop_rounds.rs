@@ -35,7 +35,13 @@ impl LightTotals {
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
         });
         let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
-        Self { kinds: LightKinds::among(lights), count: lights.len() as u64, areas, vertices, ray_rounds: 0 }
+        Self {
+            kinds: LightKinds::among(lights),
+            count: lights.len() as u64,
+            areas,
+            vertices,
+            ray_rounds: 0,
+        }
     }
 
     /// With rays of at most so many rounds in place of shadow maps.

@@ -83,8 +83,7 @@ impl RasterSpheres {
         entries.extend(LightingInputs::layout(inputs.bound(), stages));
         let layout = gpu.bind_group_layout("raster spheres", &entries);
         let shader = options.set_flags(images.set_flags(lighting_modules(LISTS_GROUP)));
-        let module =
-            mount_rays(shader, inputs.images()).create(gpu, "package::raster_spheres")?;
+        let module = mount_rays(shader, inputs.images()).create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
             pipeline(renderer, &layout, &module, [vertex, fragment], volumes)
         };
@@ -125,7 +124,11 @@ impl RasterSpheres {
         // Each fragment adds only one light, so each is checked separately.
         let ray_rounds = renderer.shadows.ray_rounds();
         for light in LightTotals::of_each(lights) {
-            light.with_rays(ray_rounds).check(&renderer.gpu, self.options, LightReader::Stored(Storage::Lists))?;
+            light.with_rays(ray_rounds).check(
+                &renderer.gpu,
+                self.options,
+                LightReader::Stored(Storage::Lists),
+            )?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

@@ -82,8 +82,7 @@ impl DeepImages {
         shader: Shader<'a>,
         (group, first): (u32, u32),
     ) -> Shader<'a> {
-        let slots =
-            format!("const RAY_GROUP: u32 = {group}u;\nconst RAY_FIRST: u32 = {first}u;\n");
+        let slots = format!("const RAY_GROUP: u32 = {group}u;\nconst RAY_FIRST: u32 = {first}u;\n");
         let shader = shader
             .module("package::ray_slots", slots)
             .module("package::deep_images", include_str!("../shaders/deep_images.wesl"))

@@ -5,7 +5,9 @@
 
 use clap::{ArgMatches, parser::ValueSource};
 
-use super::{CdiArgs, CliError, CompareArgs, ExplainArgs, Invocation, RangeChoice, StageArgs, StudyArgs};
+use super::{
+    CdiArgs, CliError, CompareArgs, ExplainArgs, Invocation, RangeChoice, StageArgs, StudyArgs,
+};
 
 /// Options, when they have an effect, and what they need.
 struct Rule<A> {

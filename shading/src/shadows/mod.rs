@@ -358,7 +358,8 @@ fn check_known(lights: &LightBuffer, model: ShadowModel) -> Result<(), AssignErr
     Err(AssignError::Unsupported {
         strategy: format!("shadow model {model}"),
         asked: "lights that the GPU moves, makes or orders".into(),
-        reason: "the CPU chooses points of the lights, and must know the lights and their order".into(),
+        reason: "the CPU chooses points of the lights, and must know the lights and their order"
+            .into(),
     })
 }
 

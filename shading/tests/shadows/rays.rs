@@ -54,7 +54,7 @@ fn lights_of_one_position_cast_shadows_up_to_the_pixel() {
         let errors = [off(&images[0], &direct), off(&images[1], &direct)];
         println!("{:?}: {errors:.4?}", light.shape);
         assert!(errors[0] > 0.03, "{:?}, without shadows: {errors:?}", light.shape);
-        assert!(errors[1] < 0.08 * errors[0], "{:?}: {errors:?}", light.shape);
+        assert!(errors[1] < 0.12 * errors[0], "{:?}: {errors:?}", light.shape);
     }
 }
 
@@ -117,8 +117,7 @@ fn rays_are_refused_without_finished_images_of_the_scene() {
         error
     };
     let error = refused(&mut renderer, &lights);
-    let expected =
-        "shadow model is cdi:4: it must be none or one with maps before Renderer::cast_rays_through";
+    let expected = "shadow model is cdi:4: it must be none or one with maps before Renderer::cast_rays_through";
     assert_eq!(error, expected);
     let directions = Directions::new(Spread::Squares, 4, 4).unwrap();
     let good = shadow_images(directions, 64);

@@ -41,10 +41,10 @@ fn shadows_differ_in_no_bit_between_strategies() {
     let maps = renderer.shadow_figures().unwrap().maps;
     assert!((30 + 2 * 4 + 1..30 + 2 * 25).contains(&maps), "{maps} maps");
     all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred]);
-    cast_rays_through(&mut renderer, &common::showcase(), 4, 64);
-    let model = ShadowModel::Cdi { rays: 9 };
+    cast_rays_through(&mut renderer, &common::showcase(), 4, 32);
+    let model = ShadowModel::Cdi { rays: 4 };
     let figures = renderer.cast_shadows(&lights, model).unwrap().unwrap();
-    assert_eq!((figures.maps, figures.faces, figures.fell_back()), (30 + 2 * 9, 0, false));
+    assert_eq!((figures.maps, figures.faces, figures.fell_back()), (30 + 2 * 4, 0, false));
     all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred, Mode::Forward]);
 }
 
@@ -95,7 +95,7 @@ fn light_volumes_and_single_lights_have_the_same_shadows() {
     let view = common::view([96, 64]);
     let lights = LightBuffer::new(&gpu, &lights()).unwrap();
     let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
-    cast_rays_through(&mut renderer, &common::showcase(), 4, 64);
+    cast_rays_through(&mut renderer, &common::showcase(), 4, 32);
     for model in [maps(4, 64, 1), ShadowModel::Cdi { rays: 4 }] {
         renderer.cast_shadows(&lights, model).unwrap();
         renderer.prepare(&view, &lights).unwrap();

@@ -30,6 +30,8 @@ pub(crate) const SIDES: &str = "sides";
 pub(crate) const TAPS: &str = "taps";
 /// The number of lights that share one atlas.
 pub(crate) const LIGHTS: &str = "lights";
+/// Rays in place of maps, and maps from as many points.
+pub(crate) const RAYS: &str = "rays";
 
 /// Lights that frames subdivide, by the resolution of the test, and fixed numbers of maps beside them.
 pub(crate) const ADAPTIVE: &str = "adaptive";
@@ -37,7 +39,7 @@ pub(crate) const ADAPTIVE: &str = "adaptive";
 pub(crate) const APPROACH: &str = "approach";
 
 /// The sections whose images are compared, each with the section of its truth.
-pub(crate) const AGAINST: [(&str, &str); 8] = [
+pub(crate) const AGAINST: [(&str, &str); 9] = [
     (SEPARATED, TRUTH),
     (NONE, TRUTH),
     (MAPS, TRUTH),
@@ -45,6 +47,7 @@ pub(crate) const AGAINST: [(&str, &str); 8] = [
     (TAPS, TRUTH),
     (LIGHTS, LIGHTS_TRUTH),
     (ADAPTIVE, TRUTH),
+    (RAYS, TRUTH),
     (PIPELINE, UNSHADOWED),
 ];
 
@@ -70,10 +73,10 @@ const FIXED: [u32; 2] = [25, 81];
 const MOST_MAPS: u32 = 64;
 
 /// The range of a light as a share of the diagonal of the scene's core: that of the study of area lights.
-const RANGE_SHARE: f32 = 0.5;
+pub(super) const RANGE_SHARE: f32 = 0.5;
 
 /// Lights of all sections but one.
-const FEW: u32 = 4;
+pub(super) const FEW: u32 = 4;
 
 /// How much the study looks at.
 pub(crate) struct Extent {
@@ -207,7 +210,7 @@ fn stops(
 }
 
 /// The options of the lights: rectangles with equal ranges.
-fn alike(range_m: f32) -> Vec<String> {
+pub(super) fn alike(range_m: f32) -> Vec<String> {
     // All digits: in a scene of millimetres, a rounded range would differ.
     let range = range_m.clamp(1e-6, 1e6).to_string();
     let alike = ["--radii", "equal", "--radius-scale", &range];

@@ -12,6 +12,7 @@ mod claims;
 mod jobs;
 mod occlusion;
 mod page;
+mod rays;
 
 use super::against_truth::{TruthOf, compare_with_truths};
 use super::job::Job;
@@ -40,13 +41,14 @@ pub(crate) const STUDY: Study = Study {
     notices: |_| Vec::new(),
 };
 
-/// The jobs on errors, and the one on lists that know occlusion.
+/// The jobs on errors, those of rays in place of maps, and the one on lists that know occlusion.
 fn all_jobs(
     bench: &mut Bench,
     args: &StudyArgs,
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let mut all = jobs::jobs(bench, args, scene)?;
+    all.extend(rays::jobs(bench, args, scene)?);
     all.push(occlusion::job(args, scene, jobs::extent_of(args)));
     Ok(all)
 }
