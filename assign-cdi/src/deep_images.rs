@@ -1,5 +1,8 @@
 //! Compound deep images on the GPU: triangles fill them, rays read them.
 
+mod ray_buffers;
+mod settle;
+
 use assign::{AssignError, Gpu, Passes, Readback, Shader};
 use bytemuck::{Zeroable, bytes_of};
 
@@ -11,6 +14,8 @@ use crate::{
     kernel::{self, Slot, workgroups},
     stages::{COUNT, FILL, LARGE_AT, Stages, at_once},
 };
+
+pub use ray_buffers::RayBuffers;
 
 /// The module that casts rays. [`DeepImages::mount`] mounts it as `package::ray_cast`.
 pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
@@ -321,13 +326,9 @@ impl DeepImages {
         self.groups.as_ref().map(|groups| &groups.rays)
     }
 
-    /// Mounts `package::ray_cast` and what it imports. [`bind_group`](Self::bind_group) is then bind group `group`.
+    /// Mounts `package::ray_cast`, `package::segment` and what they import. [`bind_group`](Self::bind_group) is then
+    /// bind group `group`.
     pub fn mount<'a>(settings: &DeepImageSettings, shader: Shader<'a>, group: u32) -> Shader<'a> {
-        let shader = shader
-            .module("package::ray_slots", format!("const RAY_GROUP: u32 = {group}u;\n"))
-            .module("package::deep_images", include_str!("shaders/deep_images.wesl"))
-            .module("package::ray_cast", RAY_CAST_WESL)
-            .flag("linked", settings.storage == Storage::LinkedLists);
-        settings.directions.mount(shader)
+        Self::mount_at(settings, shader, (group, 0))
     }
 }

@@ -20,6 +20,10 @@
 //! [`RangeCaster`] then casts rays from points on surfaces, in the pass `cdi-ranges`. A ray picks the direction
 //! nearest to its own and the pixel of its origin, and takes the first depth beyond the origin.
 //!
+//! Shadows ask less and more: whether a surface lies between two points. `package::segment` tells, and changes the pixel on
+//! the way, so that it ends at its second point. [`DeepImages::settle`] builds images that stay, and
+//! [`DeepImages::ray_buffers`] hands them to a renderer's own bind group.
+//!
 //! Two other ways to build and to store are there for comparison: [`Build::PerDirection`] and
 //! [`Storage::LinkedLists`].
 //!
@@ -93,7 +97,7 @@ mod vpl;
 
 pub use build_kernels::{BUILD_ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, RAY_CAST_WESL};
+pub use deep_images::{DeepImages, RAY_CAST_WESL, RayBuffers};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
 pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use image_space::{ImagesUniform, Triangles};

@@ -95,8 +95,9 @@ pub fn compare_on(
     stage.show_layers(&args.layers, args.stage.seed)?;
     stage.sample_pixels(args.msaa)?;
     let finds_occluders = choices.iter().any(Choice::leaves_out_hidden);
-    let fewer_maps =
-        stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders })?;
+    let images = Some(&args.stage.bounce.deep);
+    let casting = Casting { cut: args.cut, finds_occluders, images };
+    let warning = stage.cast_shadows(args.shadows, casting)?;
     // Refuse strategies that cannot serve the scene before any long work starts.
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
@@ -112,7 +113,7 @@ pub fn compare_on(
     run.follow_path();
     run.results.warnings.extend(left_out.iter().map(RefusedStrategy::words));
     run.results.refused.extend(left_out);
-    run.results.warnings.extend(fewer_maps);
+    run.results.warnings.extend(warning);
     run.warn(&choices);
     remove_stale(&args.out)?;
     run.look()?;

@@ -1,52 +1,108 @@
-//! Builds the deep images of a scene with the settings of the command line.
+//! Deep images of a scene with the settings of the command line.
 
-use assign::{AssignError, EncoderPasses, Gpu};
+use assign::AssignError;
 use assign_cdi::{
-    Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Storage, Triangles,
+    Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Spread, Storage, Triangles,
 };
 use shading::WorldTriangles;
 
 use crate::{
-    cli::{BuildChoice, DeepArgs, name_of},
-    error::HarnessError,
+    cli::{BuildChoice, DeepArgs, DirectionCounts, name_of},
     results,
 };
 
-/// The most builds until the buffers are large enough.
-const MAX_SETTLING: u32 = 8;
+/// What deep images are like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeepChoice {
+    directions: DirectionCounts,
+    spread: Spread,
+    size_px: u32,
+    oversampling: u32,
+    build: BuildChoice,
+}
 
-/// The settings on the command line.
-pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
-    let visits =
-        [BuildChoice::PerDirection, BuildChoice::PerDirectionBatched, BuildChoice::Conservative];
-    if args.oversampling > 1 && visits.contains(&args.build) {
-        return Err(AssignError::Parameter {
-            field: "--oversampling".into(),
-            value: args.oversampling.to_string(),
-            accepted: format!("1 for --build {}", name_of(&args.build)),
-        });
+impl DeepChoice {
+    /// Those of rays that find ranges: the paper's, unless the command line says otherwise.
+    pub fn of_ranges(args: &DeepArgs) -> Self {
+        Self {
+            directions: args.directions.unwrap_or(DirectionCounts { stacks: 13, slices: 13 }),
+            spread: args.spread.unwrap_or(Spread::StacksAndSlices),
+            size_px: args.deep_size.unwrap_or(64),
+            oversampling: args.oversampling,
+            build: args.build.unwrap_or(BuildChoice::Compute),
+        }
     }
-    let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
-    let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
-    let directions = Directions::new(args.spread, args.directions.stacks, args.directions.slices)?;
-    let settings = DeepImageSettings {
-        directions,
-        size_px: args.deep_size,
-        build: match args.build {
-            BuildChoice::Compute | BuildChoice::LinkedLists => single(Raster::Compute),
-            BuildChoice::Fragment => single(Raster::Fragment),
-            BuildChoice::PerDirection => each(Coverage::Centres, 1),
-            BuildChoice::PerDirectionBatched => each(Coverage::Centres, directions.count()),
-            BuildChoice::Conservative => each(Coverage::Conservative, directions.count()),
-        },
-        storage: match args.build {
-            BuildChoice::LinkedLists => Storage::LinkedLists,
-            _ => Storage::Arrays,
-        },
-        ..DeepImageSettings::default()
-    };
-    settings.check()?;
-    Ok(settings)
+
+    /// Those of rays that find shadows ([`shading::shadow_images`]), unless the command line says otherwise.
+    pub fn of_shadows(args: &DeepArgs) -> Self {
+        Self {
+            directions: args.directions.unwrap_or(DirectionCounts { stacks: 8, slices: 8 }),
+            spread: args.spread.unwrap_or(Spread::Squares),
+            size_px: args.deep_size.unwrap_or(512),
+            oversampling: args.oversampling,
+            build: args.build.unwrap_or(BuildChoice::PerDirectionBatched),
+        }
+    }
+
+    /// Their settings.
+    ///
+    /// # Errors
+    ///
+    /// Names the first option out of its range.
+    pub fn settings(self) -> Result<DeepImageSettings, AssignError> {
+        let Self { directions, spread, size_px, oversampling, build } = self;
+        let visits = [
+            BuildChoice::PerDirection,
+            BuildChoice::PerDirectionBatched,
+            BuildChoice::Conservative,
+        ];
+        if oversampling > 1 && visits.contains(&build) {
+            return Err(AssignError::Parameter {
+                field: "--oversampling".into(),
+                value: oversampling.to_string(),
+                accepted: format!("1 for --build {}", name_of(&build)),
+            });
+        }
+        let single = |raster| Build::SinglePass { oversampling, raster };
+        let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
+        let directions = Directions::new(spread, directions.stacks, directions.slices)?;
+        let settings = DeepImageSettings {
+            directions,
+            size_px,
+            build: match build {
+                BuildChoice::Compute | BuildChoice::LinkedLists => single(Raster::Compute),
+                BuildChoice::Fragment => single(Raster::Fragment),
+                BuildChoice::PerDirection => each(Coverage::Centres, 1),
+                BuildChoice::PerDirectionBatched => each(Coverage::Centres, directions.count()),
+                BuildChoice::Conservative => each(Coverage::Conservative, directions.count()),
+            },
+            storage: match build {
+                BuildChoice::LinkedLists => Storage::LinkedLists,
+                _ => Storage::Arrays,
+            },
+            ..DeepImageSettings::default()
+        };
+        settings.check()?;
+        Ok(settings)
+    }
+
+    /// What is stored of images that were made so.
+    pub fn figures(self, images: &DeepImages) -> results::DeepImages {
+        let stats = images.stats().unwrap_or_default();
+        results::DeepImages {
+            stacks: self.directions.stacks,
+            slices: self.directions.slices,
+            spread: self.spread.name().to_owned(),
+            size_px: self.size_px,
+            oversampling: self.oversampling,
+            build: name_of(&self.build),
+            footprint_m: f64::from(images.space().footprint_m),
+            samples: u64::from(stats.sample_count),
+            fragments: u64::from(stats.fragment_count),
+            longest_list: u64::from(stats.longest),
+            bytes: images.bytes(),
+        }
+    }
 }
 
 /// The buffer of a scene's triangles, as deep images take it.
@@ -55,58 +111,5 @@ pub fn triangles_of(triangles: &WorldTriangles) -> Triangles<'_> {
         positions: &triangles.positions,
         count: triangles.count,
         bounds_world: triangles.bounds_world,
-    }
-}
-
-/// Builds prepared images once, untimed, and waits for them.
-pub fn build(gpu: &Gpu, images: &mut DeepImages) -> Result<(), AssignError> {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    images.record(&mut EncoderPasses { encoder: &mut encoder });
-    gpu.queue.submit([encoder.finish()]);
-    gpu.wait()
-}
-
-/// Builds until nothing overflows.
-///
-/// # Errors
-///
-/// Where the images do not fit, with what they would need.
-pub fn settle(
-    gpu: &Gpu,
-    images: &mut DeepImages,
-    triangles: &Triangles<'_>,
-) -> Result<(), HarnessError> {
-    for built in 0..=MAX_SETTLING {
-        images.prepare(gpu, triangles)?;
-        // The counters of a build come back with the next.
-        if built > 1 && images.is_complete() == Some(true) {
-            return Ok(());
-        }
-        build(gpu, images)?;
-    }
-    let fragments = images.stats().map_or(0, |stats| stats.fragment_count);
-    Err(AssignError::TooLarge {
-        what: format!("deep images of {fragments} fragments"),
-        bytes: u64::from(fragments) * 4,
-        limit: gpu.max_storage_bytes(),
-    }
-    .into())
-}
-
-/// What is stored of deep images.
-pub fn figures(images: &DeepImages, args: &DeepArgs) -> results::DeepImages {
-    let stats = images.stats().unwrap_or_default();
-    results::DeepImages {
-        stacks: args.directions.stacks,
-        slices: args.directions.slices,
-        spread: args.spread.name().to_owned(),
-        size_px: args.deep_size,
-        oversampling: args.oversampling,
-        build: name_of(&args.build),
-        footprint_m: f64::from(images.space().footprint_m),
-        samples: u64::from(stats.sample_count),
-        fragments: u64::from(stats.fragment_count),
-        longest_list: u64::from(stats.longest),
-        bytes: images.bytes(),
     }
 }

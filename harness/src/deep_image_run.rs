@@ -10,7 +10,7 @@ use crate::{
     checks::remove_stale,
     cli::CdiArgs,
     clock::{PassClock, PassTime},
-    deep::{figures, settings_of, settle, triangles_of},
+    deep::{DeepChoice, triangles_of},
     drift::{WarmUp, unsteady},
     error::HarnessError,
     machine::machine,
@@ -25,7 +25,7 @@ use crate::{
 /// Runs it, writes its results, and returns what to print. `command` is the command line, for
 /// provenance.
 pub fn cdi(args: &CdiArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    settings_of(&args.deep)?;
+    DeepChoice::of_ranges(&args.deep).settings()?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let results = measure(&mut bench, args, command)?;
@@ -41,13 +41,14 @@ pub fn measure(
     args: &CdiArgs,
     command: Vec<String>,
 ) -> Result<Results, HarnessError> {
-    let settings = settings_of(&args.deep)?;
+    let deep = DeepChoice::of_ranges(&args.deep);
+    let settings = deep.settings()?;
     let gpu = bench.gpu().clone();
     let (scene, triangles) = bench.triangles(&args.scene, args.scene_scale)?;
     remove_stale(&args.out)?;
     let triangles = triangles_of(triangles);
     let mut images = DeepImages::new(&gpu, settings)?;
-    settle(&gpu, &mut images, &triangles)?;
+    images.settle(&gpu, &triangles)?;
     let frames = args.frames.unwrap_or(DEFAULT_FRAMES[usize::from(gpu.is_software())]);
     let passes = time(&gpu, &mut images, &triangles, frames)?;
     let primary = primary_light(scene);
@@ -70,7 +71,7 @@ pub fn measure(
         scene: scene.name.clone(),
         scene_hash: scene.hash(),
         triangles: scene.triangle_count(),
-        deep: figures(&images, &args.deep),
+        deep: deep.figures(&images),
         passes,
         casts,
         range_errors: plain,

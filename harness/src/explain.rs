@@ -107,7 +107,8 @@ pub fn set_stage<'a>(
     stage.specular_reach = args.specular_reach.map(|most| most as f32);
     stage.area_lod = args.area_lod.map(|angle| angle as f32);
     stage.show_layers(&args.layers, args.stage.seed)?;
-    stage.cast_shadows(args.shadows, Casting { cut: args.cut, finds_occluders: false })?;
+    let images = Some(&args.stage.bounce.deep);
+    stage.cast_shadows(args.shadows, Casting { cut: args.cut, images, ..Casting::default() })?;
     if args.path {
         stage.follow_path(frames);
     }

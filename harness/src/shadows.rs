@@ -1,34 +1,38 @@
-//! The shadow maps of a stage.
+//! The shadow maps of a stage, or the rays in place of them.
 
+use assign_cdi::Storage;
 use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
     choice::Choice,
-    cli::{CliError, LayerArgs, StageArgs},
+    cli::{CliError, DeepArgs, LayerArgs, StageArgs},
     clock::PassClock,
+    deep::DeepChoice,
     error::HarnessError,
     messages::say,
-    results::{AdaptiveSetting, ShadowSetting, median},
+    results::{AdaptiveSetting, DeepImages, ShadowSetting, median},
     stage::Stage,
 };
 
 /// How often a GPU draws all maps again, and tests them for bands, to time it.
 const REPEATS: u32 = 7;
 
-/// What shadow maps are cast for.
+/// What shadows are cast for, and by.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Casting {
+pub struct Casting<'a> {
     /// How light ends at the lights' ranges: what lies beyond hides nothing.
     pub cut: Cut,
     /// Whether strategies ask what hides lights from groups.
     pub finds_occluders: bool,
+    /// The deep images that rays cross.
+    pub images: Option<&'a DeepArgs>,
 }
 
 impl Stage {
     /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. With an
-    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. If asked
-    /// to, it also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got
-    /// fewer maps than asked for.
+    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. With rays, it
+    /// builds deep images instead. If asked to, it also finds what hides lights from groups, for strategies with `/occ`.
+    /// Returns a warning if area lights got fewer maps than asked for, and if rays meet alpha masks.
     ///
     /// # Errors
     ///
@@ -38,7 +42,7 @@ impl Stage {
     pub fn cast_shadows(
         &mut self,
         model: ShadowModel,
-        Casting { cut, finds_occluders }: Casting,
+        Casting { cut, finds_occluders, images }: Casting<'_>,
     ) -> Result<Option<String>, HarnessError> {
         let specular_reach = self.specular_reach;
         let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
@@ -48,9 +52,17 @@ impl Stage {
             let accepted = "none in a scene with suns, which have no shadow maps";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
-        (self.shadow_draw_ms, self.shadow_rounds) = (None, None);
+        (self.shadow_draw_ms, self.shadow_rounds, self.shadow_images) = (None, None, None);
+        let images = images.map(DeepChoice::of_shadows).filter(|_| model.casts_rays());
+        if let Some(images) = images {
+            let triangles = self.vpl_maker.triangles(&self.gpu, &self.scene)?;
+            self.renderer.cast_rays_through(triangles, images.settings()?);
+        }
         let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
         self.shadows = model;
+        if let (Some(choice), Some(images)) = (images, self.renderer.shadow_images()) {
+            return Ok(self.tell_images(figures, choice.figures(images)));
+        }
         let [width, height] = figures.atlas_px;
         say(format!(
             "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn once in {:.1} ms",
@@ -81,6 +93,30 @@ impl Stage {
             warning
         });
         Ok(warning)
+    }
+
+    /// Says what rays cross, and keeps it. Returns a warning if the scene has alpha masks.
+    fn tell_images(&mut self, figures: ShadowFigures, images: DeepImages) -> Option<String> {
+        say(format!(
+            "shadows  rays to {0} points of lights through {1} images of {2}x{2} pixels of {3:.3} m ({4} MiB), built once in \
+             {5:.1} ms",
+            figures.maps,
+            images.directions(),
+            images.size_px,
+            images.footprint_m,
+            images.bytes.div_ceil(1 << 20),
+            self.shadow_draw_ms.unwrap_or_default()
+        ));
+        self.shadow_images = Some(images);
+        let has_holes = self.scene.materials.iter().any(|one| one.alpha_cutoff.is_some());
+        has_holes.then(|| {
+            let model = figures.model;
+            let warning = format!(
+                "--shadows {model}: rays take alpha masks as solid, so their holes cast shadows too"
+            );
+            say(format!("warning  {warning}"));
+            warning
+        })
     }
 
     /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter a single
@@ -155,6 +191,7 @@ impl Stage {
             occluder_bytes: Some(figures.occluder_bytes).filter(|bytes| *bytes > 0),
             draw_ms: self.shadow_draw_ms,
             adaptive: self.adaptive_setting(),
+            deep: self.shadow_images.clone(),
         })
     }
 }
@@ -198,6 +235,14 @@ pub(crate) fn check_shadows(
     }
     if stage.light_order().is_on_gpu() {
         return refuse("none with --light-order gpu, gpuN and gpuN%, which the CPU does not know");
+    }
+    if model.casts_rays() {
+        let images = DeepChoice::of_shadows(&stage.bounce.deep);
+        let settings = images.settings().map_err(|error| CliError::new(error.to_string()))?;
+        if settings.storage == Storage::LinkedLists {
+            let accepted = "another build with --shadows cdi:N, whose rays search sorted lists";
+            return Err(CliError::out_of_range("--build", "linked-lists", accepted));
+        }
     }
     Ok(())
 }

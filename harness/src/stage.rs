@@ -12,7 +12,7 @@ use crate::{
     moving::{Moving, kinds_of},
     open_lights::OpenLights,
     optics::Optics,
-    results::{Planes, Vpls},
+    results::{DeepImages, Planes, Vpls},
     stage_lights::Lit,
     vpls::{Bounce, Made, VplMaker},
 };
@@ -51,6 +51,8 @@ pub struct Stage {
     pub(crate) shadow_draw_ms: Option<f64>,
     /// With an adaptive model: frames until the maps had settled, and the time of the test for bands, ms.
     pub(crate) shadow_rounds: Option<(u32, Option<f64>)>,
+    /// The deep images that rays of shadows cross, if there are any.
+    pub(crate) shadow_images: Option<DeepImages>,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// What makes them in every frame, if they stay on the GPU.
@@ -61,7 +63,7 @@ pub struct Stage {
     pub notes: Vec<String>,
     /// The pipeline.
     pub renderer: Renderer,
-    vpl_maker: VplMaker,
+    pub(crate) vpl_maker: VplMaker,
     /// Virtual point lights that the GPU found faulty.
     faulty_vpls: u32,
     optics: Optics,
@@ -143,6 +145,7 @@ impl Stage {
             shadows: ShadowModel::None,
             shadow_draw_ms: None,
             shadow_rounds: None,
+            shadow_images: None,
             vpls: None,
             bounce: None,
             vpl_maker: VplMaker::default(),

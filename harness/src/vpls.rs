@@ -56,6 +56,19 @@ pub struct Made {
 }
 
 impl VplMaker {
+    /// The scene's triangles. It must be the same in every call.
+    pub fn triangles(
+        &mut self,
+        gpu: &Gpu,
+        scene: &Scene,
+    ) -> Result<Arc<WorldTriangles>, HarnessError> {
+        let known = match self.triangles.take() {
+            Some(known) => known,
+            None => Arc::new(WorldTriangles::new(gpu, scene)?),
+        };
+        Ok(Arc::clone(self.triangles.insert(known)))
+    }
+
     /// Turns the light of `primary` that surfaces reflect into virtual point lights. The scene must be the
     /// same in every call.
     ///
@@ -71,13 +84,10 @@ impl VplMaker {
         args: &StageArgs,
     ) -> Result<Made, HarnessError> {
         let casts = args.bounce.ranges.casts();
-        if casts && self.triangles.is_none() {
-            self.triangles = Some(Arc::new(WorldTriangles::new(gpu, scene)?));
-        }
         let order = args.light_order();
         // A sample may be lit by all lights that fit, and a software adapter ends long loops.
         let limit = gpu.max_loop_rounds().filter(|_| order.is_on_gpu());
-        let triangles = self.triangles.clone().filter(|_| casts);
+        let triangles = if casts { Some(self.triangles(gpu, scene)?) } else { None };
         let mut bounce = Bounce::new(gpu, (scene, renderer), primary, args, limit, triangles)?;
         let passes = if order.is_on_gpu() {
             bounce.run(gpu)?;

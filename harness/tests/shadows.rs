@@ -71,6 +71,7 @@ fn records_keep_the_model_and_maps_come_close_to_the_truth() {
         occluder_bytes: None,
         draw_ms: None,
         adaptive: None,
+        deep: None,
     };
     assert_eq!((plain.len(), shadowed.len()), (6, 6));
     for (plain, shadowed) in plain.iter().zip(&shadowed) {
@@ -110,6 +111,52 @@ fn adaptive_maps_settle_before_methods_are_compared() {
     assert_eq!(found.maps_of_rectangles.iter().sum::<u32>(), first.maps);
     assert_eq!(first.faces, 5 * first.maps);
     assert!(found.frames > 0 && found.banding_ms > Some(0.0) && first.draw_ms > Some(0.0));
+}
+
+#[test]
+fn rays_keep_their_images_and_all_strategies_show_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let options = ["compare", "--strategies", "None,SC-E", "--frames", "1", "--warmup", "0"];
+    let images = ["--shadows", "cdi:4", "--directions", "2x4", "--deep-size", "32"];
+    let checks = ["--truth", "none", "--out", out];
+    run(&[&options[..], &VIEW[..], &images[..], &checks[..]].concat());
+    let records = Results::read(&folder.path().join("results.json")).expect("results").records;
+    assert_eq!(records.len(), 2);
+    for record in &records {
+        let found = record.setting.shadows.clone().expect("shadows");
+        let deep = found.deep.as_ref().expect("deep images");
+        assert_eq!((&found.model[..], found.maps_per_area_light, found.maps), ("cdi:4", 4, 12));
+        assert_eq!((found.faces, found.atlas_px), (0, [0, 0]));
+        assert_eq!((deep.directions(), deep.size_px), (8, 32));
+        assert_eq!((&deep.build[..], &deep.spread[..]), ("per-direction-batched", "squares"));
+        assert!(deep.fragments > 1000 && deep.bytes > 4 * deep.fragments, "{deep:?}");
+        assert!(found.draw_ms > Some(0.0));
+        assert_eq!(record.image.differing_channels, Some(0), "{}", record.strategy);
+    }
+}
+
+#[test]
+fn options_that_rays_do_not_take_are_refused() {
+    for (line, expected) in [
+        ("--shadows cdi:5", "it must be none, maps:N,PX"),
+        ("--shadows cdi:4 --strategies SC-E/occ", "combined with --shadows maps:N,PX"),
+        ("--shadows cdi:4 --build linked-lists", "--build is linked-lists: it must be another"),
+        ("--shadows cdi:4 --oversampling 2", "1 for --build per-direction-batched"),
+        ("--shadows cdi:4 --light-order gpu", "none with --light-order gpu"),
+        ("--shadows cdi:4 --motion drift", "none with --motion"),
+        ("--shadows cdi:4 --fog 0.1", "none with --transparent, --particles and --fog"),
+        (
+            "--shadows maps:4,64 --deep-size 64",
+            "--deep-size has no effect here: it needs --shadows",
+        ),
+    ] {
+        let words = ["compare"].into_iter().chain(line.split_whitespace());
+        let output = Command::new(env!("CARGO_BIN_EXE_lightbench")).args(words).output();
+        let output = output.expect("starts");
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && error.contains(expected), "{line}: {error}");
+    }
 }
 
 /// Strategies of all families that have the segment show the image of no culling with shorter lists, in the atrium with lights

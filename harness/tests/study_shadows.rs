@@ -75,6 +75,7 @@ fn image(maps: u32, px: u32, taps: u32, flip: f64) -> Results {
         occluder_bytes: None,
         draw_ms: Some(3.25),
         adaptive: None,
+        deep: None,
     });
     record.image.truth_errors.insert("flip".into(), Some(flip));
     record.image.truth_errors.insert("rel_mse".into(), Some(10.0 * flip));
@@ -230,7 +231,7 @@ fn the_quick_study_compares_every_image_with_its_truth() {
     let out = folder.path().join("study");
     let out_text = out.to_str().expect("UTF-8");
     let only = "small-truth,separated,none,maps-1024-1,maps-1024-9,sides-9-64,taps-4,lights-1,\
-        adaptive-1-8,approach-0-1-8,approach-2-fixed";
+        adaptive-1-8,approach-0-1-8,approach-2-fixed,rays-1-4x4,rays-maps-1";
     let words = ["study", "shadows", "--quick", "--scene", "town-small", "--size", "32x18"];
     let output = Command::new(env!("CARGO_BIN_EXE_lightbench"))
         .args([&words[..], &["--only", only, "--out", out_text]].concat())
@@ -251,7 +252,7 @@ fn the_quick_study_compares_every_image_with_its_truth() {
             compared += 1;
         }
     }
-    assert!(compared >= 8, "{compared}");
+    assert!(compared >= 10, "{compared}");
     // The errors of P survive without images.
     let floor = |done: &Done| {
         let truth = done.results["town-small-separated"].truth_image.as_ref().expect("P");
@@ -259,9 +260,15 @@ fn the_quick_study_compares_every_image_with_its_truth() {
     };
     assert!(floor(&done) > Some(0.0));
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
-    for part in ["maps", "sides", "taps", "lights", "adaptive", "table", "approach", "pictures"] {
+    for part in
+        ["maps", "sides", "taps", "lights", "adaptive", "table", "approach", "rays", "pictures"]
+    {
         assert!(page.contains(&format!("data-part=\"{part}\"")), "{part}");
     }
     assert!(page.contains("P, exact shares"));
+    assert!(
+        page.contains("with 4 lights, 1 ray through 16 images of 32\u{b2}, and "),
+        "rays are named"
+    );
     write_study(&done, folder.path()).expect("writes");
 }

@@ -6,7 +6,7 @@ use crate::ShadowModel;
 
 /// Bindings of `shadow.wesl` in group 2.
 const ATLAS_BINDING: u32 = 26;
-const RECORDS_BINDING: u32 = 27;
+pub(crate) const RECORDS_BINDING: u32 = 27;
 
 /// Shadow maps as shaders read them. Clones share them.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec, pod_read
 
 use crate::{
     LightingOptions, Renderer, ShadingError,
+    bound_shadows::mount_rays,
     gbuffer_inputs::GBufferInputs,
     lighting_inputs::LightingInputs,
     pixel_pass::PixelPass,
@@ -100,7 +101,7 @@ fn evaluate(
     let surface = gpu.storage("surface of a pixel", surface_bytes)?;
     let stages = wgpu::ShaderStages::COMPUTE;
     let images = GBufferInputs::of_scene(&renderer.scene);
-    let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
+    let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
     let mut layout = vec![
         uniform_entry(PIXEL_BINDING, stages),
         storage_entry(ENTRIES_BINDING, stages, true),
@@ -118,7 +119,7 @@ fn evaluate(
     let pass = PixelPass {
         name: "contributions",
         entry_point: "evaluate",
-        shader: options.set_flags(lighting_modules(LISTS_GROUP)),
+        shader: mount_rays(options.set_flags(lighting_modules(LISTS_GROUP)), inputs.images()),
         images,
         layout,
         resources,

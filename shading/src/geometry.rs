@@ -57,7 +57,7 @@ pub struct SceneGpu {
     pub(crate) sheets: Vec<Sheet>,
     pub(crate) materials: Materials,
     /// Layouts of bind group 2, one for each of [`Bound::ALL`].
-    layouts: [wgpu::BindGroupLayout; 8],
+    layouts: [wgpu::BindGroupLayout; Bound::ALL.len()],
     pub(crate) instances: wgpu::Buffer,
 }
 

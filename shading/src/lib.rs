@@ -10,6 +10,7 @@
 //! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
+//! | `cdi-count`, `cdi-scan`, `cdi-fill`, `cdi-sort` | once, with [`ShadowModel::Cdi`], in place of `shadow-maps` | triangles | deep images, which rays of shadows cross |
 //! | `shadow-banding` | with [`ShadowModel::Adaptive`], by [`Renderer::record_banding`] | G-buffer, shadow maps | quads of lights that show bands |
 //! | the strategy's passes | all | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
@@ -26,6 +27,7 @@
 mod area_model;
 mod before_lighting;
 mod bound_maps;
+mod bound_shadows;
 mod contributions;
 mod draws;
 mod dump;
@@ -96,9 +98,9 @@ pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
-    MOST_ADAPTIVE, ShadowModel, TAP_COUNTS,
+    MOST_ADAPTIVE, RAY_COUNTS, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement};
+pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement, shadow_images};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

@@ -91,10 +91,10 @@ impl Lighting {
             }
             .into());
         }
-        let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;
-        let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
+        let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
+        let lists = Lists { lookup: strategy.lookup(), options, images: inputs.images() };
         let kind = match mode {
             Mode::Deferred | Mode::DeferredIds => {
                 Kind::Deferred(Deferred::new(renderer, lists, needs.models, inputs)?)
@@ -204,10 +204,9 @@ impl Deferred {
         let images = GBufferInputs { model_ids, ..GBufferInputs::of_scene(&renderer.scene) };
         let layout = deferred_layout(gpu, images, inputs.bound());
         let shader = lists
-            .options
             .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
             .strategy(lists.lookup.module);
-        // SAFETY: its loops count up to the number of suns or maps, or end with the strategy's look-up, which
+        // SAFETY: its loops count up to the number of suns, maps or pixels, halve a list, or end with the strategy's look-up, which
         // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do,
         // and the strategy's author guarantees it of its own.
         #[allow(unsafe_code, reason = "its loops end")]

@@ -3,9 +3,14 @@
 //! maps if lights cast shadows.
 
 use assign::{AssignError, Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
+use assign_cdi::DeepImageSettings;
 use bytemuck::{Pod, Zeroable};
 
-use crate::{LightingOptions, ShadingError, bound_maps::BoundMaps, ltc};
+use crate::{
+    LightingOptions, ShadingError,
+    bound_shadows::{BoundShadows, ShadowKind},
+    ltc,
+};
 
 /// Binding of `LightingUniform` in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
@@ -74,25 +79,25 @@ impl From<&Suns> for SunsRecord {
 pub(crate) struct Bound {
     pub(crate) table: bool,
     pub(crate) suns: bool,
-    pub(crate) shadows: bool,
+    pub(crate) shadows: ShadowKind,
 }
 
 impl Bound {
     /// Every combination, each at its [`index`](Self::index).
-    pub(crate) const ALL: [Self; 8] = [
-        Self { table: false, suns: false, shadows: false },
-        Self { table: true, suns: false, shadows: false },
-        Self { table: false, suns: true, shadows: false },
-        Self { table: true, suns: true, shadows: false },
-        Self { table: false, suns: false, shadows: true },
-        Self { table: true, suns: false, shadows: true },
-        Self { table: false, suns: true, shadows: true },
-        Self { table: true, suns: true, shadows: true },
-    ];
+    pub(crate) const ALL: [Self; 12] = {
+        let mut all = [Self { table: false, suns: false, shadows: ShadowKind::None }; 12];
+        let mut ix = 0;
+        while ix < all.len() {
+            let shadows = ShadowKind::ALL[ix / 4];
+            all[ix] = Self { table: ix % 2 == 1, suns: ix % 4 > 1, shadows };
+            ix += 1;
+        }
+        all
+    };
 
     /// Its index in [`ALL`](Self::ALL).
     pub(crate) fn index(self) -> usize {
-        usize::from(self.table) + 2 * usize::from(self.suns) + 4 * usize::from(self.shadows)
+        usize::from(self.table) + 2 * usize::from(self.suns) + 4 * self.shadows as usize
     }
 }
 
@@ -102,21 +107,21 @@ pub(crate) struct LightingInputs {
     uniform: wgpu::Buffer,
     table: Option<wgpu::Buffer>,
     suns: Option<wgpu::Buffer>,
-    shadows: Option<BoundMaps>,
+    shadows: Option<BoundShadows>,
 }
 
 impl LightingInputs {
-    /// Uploads the resources that the options need. With shadows, `maps` are those of the renderer.
+    /// Uploads the resources that the options need. With shadows, `made` are those of the renderer.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] if the options ask for other shadows than those of the maps, and for shadows of suns.
+    /// [`AssignError::Parameter`] if the options ask for other shadows than those, and for shadows of suns.
     pub(crate) fn new(
         gpu: &Gpu,
         options: LightingOptions,
-        maps: Option<&BoundMaps>,
+        made: Option<BoundShadows>,
     ) -> Result<Self, ShadingError> {
-        let shadows = bound_maps(options, maps)?;
+        let shadows = bound_shadows(options, made)?;
         let uniform = gpu.uniform("lighting", size_of::<LightingRecord>() as u64);
         options.area.check()?;
         options.check_area_lod()?;
@@ -157,8 +162,7 @@ impl LightingInputs {
     ) -> impl Iterator<Item = wgpu::BindGroupLayoutEntry> {
         let table = bound.table.then(|| storage_entry(LTC_BINDING, stages, true));
         let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
-        let shadows = bound.shadows.then(|| BoundMaps::layout(stages));
-        let shadows = shadows.into_iter().flatten();
+        let shadows = bound.shadows.layout(stages);
         [uniform_entry(LIGHTING_BINDING, stages)]
             .into_iter()
             .chain(table)
@@ -170,7 +174,7 @@ impl LightingInputs {
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
         let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
-        let shadows = self.shadows.iter().flat_map(BoundMaps::entries);
+        let shadows = self.shadows.iter().flat_map(BoundShadows::entries);
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
     }
 
@@ -179,8 +183,16 @@ impl LightingInputs {
         Bound {
             table: self.table.is_some(),
             suns: self.suns.is_some(),
-            shadows: self.shadows.is_some(),
+            shadows: self
+                .shadows
+                .as_ref()
+                .map_or(ShadowKind::None, |shadows| ShadowKind::of(shadows.model())),
         }
+    }
+
+    /// The settings of the deep images that rays of shadows cross, if there are any.
+    pub(crate) fn images(&self) -> Option<DeepImageSettings> {
+        self.shadows.as_ref()?.images()
     }
 }
 
@@ -188,15 +200,15 @@ impl LightingOptions {
     /// Which resources their shader binds.
     pub(crate) fn bound(&self) -> Bound {
         let table = self.kinds.areas && self.area.table().is_some();
-        Bound { table, suns: !self.suns.is_empty(), shadows: self.shadows.is_on() }
+        Bound { table, suns: !self.suns.is_empty(), shadows: ShadowKind::of(self.shadows) }
     }
 }
 
-/// The maps that the options ask for.
-fn bound_maps(
+/// The shadows that the options ask for.
+fn bound_shadows(
     options: LightingOptions,
-    maps: Option<&BoundMaps>,
-) -> Result<Option<BoundMaps>, AssignError> {
+    made: Option<BoundShadows>,
+) -> Result<Option<BoundShadows>, AssignError> {
     if !options.shadows.is_on() {
         return Ok(None);
     }
@@ -208,10 +220,10 @@ fn bound_maps(
     if !options.suns.is_empty() {
         return refuse("none with suns, which have no maps".into());
     }
-    match maps {
+    match made {
         None => refuse("none before Renderer::cast_shadows".into()),
         Some(maps) if maps.model() != options.shadows => {
-            refuse(format!("{}, the model of the renderer's maps, or none", maps.model()))
+            refuse(format!("{}, the model of the renderer's shadows, or none", maps.model()))
         }
         Some(maps) if maps.ranges() < options.ranges_lit() => refuse(format!(
             "none where lights reach {} of their ranges: the maps hold what hides samples within {}. Call \
@@ -219,6 +231,6 @@ fn bound_maps(
             options.ranges_lit(),
             maps.ranges()
         )),
-        Some(maps) => Ok(Some(maps.clone())),
+        Some(maps) => Ok(Some(maps)),
     }
 }

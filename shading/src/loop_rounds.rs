@@ -16,6 +16,8 @@ pub(crate) struct LightTotals {
     count: u64,
     areas: u64,
     vertices: u64,
+    /// The most rounds of a ray through deep images.
+    ray_rounds: u64,
 }
 
 /// Four corners with two steps each, and the end of every loop: `angle_above` of
@@ -33,7 +35,18 @@ impl LightTotals {
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
         });
         let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
-        Self { kinds: LightKinds::among(lights), count: lights.len() as u64, areas, vertices }
+        Self {
+            kinds: LightKinds::among(lights),
+            count: lights.len() as u64,
+            areas,
+            vertices,
+            ray_rounds: 0,
+        }
+    }
+
+    /// With rays of at most so many rounds in place of shadow maps.
+    pub(crate) fn with_rays(self, ray_rounds: u64) -> Self {
+        Self { ray_rounds, ..self }
     }
 
     /// The totals of a buffer. Lights that only the GPU knows count as the kinds that take the most rounds.
@@ -56,7 +69,7 @@ impl LightTotals {
     fn unknown(kinds: LightKinds, count: u64) -> Self {
         let areas = if kinds.areas { count } else { 0 };
         let most = if kinds.curved { CURVED_VERTICES } else { MAX_VERTICES as u64 };
-        Self { kinds, count, areas, vertices: areas * most }
+        Self { kinds, count, areas, vertices: areas * most, ray_rounds: 0 }
     }
 
     /// The rounds of lighting a sample by all of the lights. A light takes one round. An area light
@@ -84,7 +97,7 @@ impl LightTotals {
     }
 
     /// The rounds of looking up a sample in all of the shadow maps: one for each map, row and texel, and one to end
-    /// each loop.
+    /// each loop. Of casting all rays, one for each ray, and those of the ray.
     fn rounds_of_shadows(&self, shadows: ShadowModel) -> u64 {
         if !shadows.is_on() {
             return 0;
@@ -92,7 +105,8 @@ impl LightTotals {
         let taps = u64::from(shadows.taps());
         let side = u64::from(shadows.taps().isqrt());
         let maps = self.areas * u64::from(shadows.maps()) + (self.count - self.areas);
-        self.count + maps * (2 + 2 * side + taps)
+        let each = if shadows.casts_rays() { self.ray_rounds } else { 2 * side + taps };
+        self.count + maps.saturating_mul(2 + each)
     }
 
     /// Checks that an adapter can light a sample by all of the lights, because any list may hold
@@ -127,7 +141,7 @@ impl LightTotals {
                 value: format!("{}, which takes {rounds} rounds of loops per sample", self.count),
                 accepted: format!(
                     "so few that these are at most {most}, because {} ends longer loops and would lose light: use fewer \
-                     lights, fewer area lights, fewer samples or shadow maps, or a GPU",
+                     lights, fewer area lights, fewer samples, shadow maps or rays, or a GPU",
                     gpu.info.name
                 ),
             }
@@ -195,5 +209,8 @@ mod tests {
         // Ten maps of three rows of three texels.
         let shadows = ShadowModel::Maps { maps: 9, px: 64, taps: 9 };
         assert_eq!(totals.rounds_of_shadows(shadows), 2 + 10 * (1 + 4 + 3 * 4));
+        // 17 rays of 40 rounds.
+        let rays = ShadowModel::Cdi { rays: 16 };
+        assert_eq!(totals.with_rays(40).rounds_of_shadows(rays), 2 + 17 * (2 + 40));
     }
 }

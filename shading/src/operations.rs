@@ -8,6 +8,7 @@ use bytemuck::pod_collect_to_vec;
 
 use crate::{
     LightingOptions, Renderer, ShadingError,
+    bound_shadows::mount_rays,
     gbuffer_inputs::GBufferInputs,
     lighting_inputs::LightingInputs,
     pixel_pass::PixelPass,
@@ -95,7 +96,7 @@ pub fn count_operations(
     let shown = gpu.uniform("exposure", 16);
     gpu.queue.write_buffer(&shown, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
     let stages = wgpu::ShaderStages::COMPUTE;
-    let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
+    let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
     let mut layout =
         vec![storage_entry(COUNTS_BINDING, stages, false), uniform_entry(EXPOSURE_BINDING, stages)];
     layout.extend(LightingInputs::layout(inputs.bound(), stages));
@@ -104,7 +105,7 @@ pub fn count_operations(
     let pass = PixelPass {
         name: "operations",
         entry_point: "count_operations",
-        shader: options.set_flags(lighting_modules(LISTS_GROUP)),
+        shader: mount_rays(options.set_flags(lighting_modules(LISTS_GROUP)), inputs.images()),
         images: GBufferInputs::of_sample(strategy.needs().models),
         layout,
         resources,

@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 
 use assign::{DepthMapping, Gpu, Shader, View};
+use assign_cdi::DeepImageSettings;
 
 use crate::{
     LightingOptions, ShadingError,
+    bound_shadows::mount_rays,
     draws::DrawKey,
     geometry::SceneGpu,
     lighting_inputs::Bound,
@@ -146,6 +148,15 @@ impl Orientation {
 pub(crate) struct Lists<'a> {
     pub(crate) lookup: assign::Lookup<'a>,
     pub(crate) options: LightingOptions,
+    /// The deep images that rays of shadows cross.
+    pub(crate) images: Option<DeepImageSettings>,
+}
+
+impl Lists<'_> {
+    /// Sets the flags of the options, and mounts what they import.
+    pub(crate) fn set_flags<'a>(&self, shader: Shader<'a>) -> Shader<'a> {
+        mount_rays(self.options.set_flags(shader), self.images)
+    }
 }
 
 /// The pipelines of one pass. Clones share them.
@@ -231,7 +242,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         _ => None,
     };
     if let Some(lists) = lists {
-        shader = lists.options.set_flags(shader).strategy(lists.lookup.module).without_subgroups();
+        shader = lists.set_flags(shader).strategy(lists.lookup.module).without_subgroups();
         if is("sheets") {
             shader = shader.looks_up_anywhere();
         }
@@ -254,8 +265,8 @@ fn pipeline(
         // A fragment shades the pixel's centre, which may lie off its triangle.
         shader = shader.looks_up_anywhere();
     }
-    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns or maps, or end with
-    // the strategy's look-up, which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of
+    // SAFETY: the loops of forward lighting and of transparent surfaces count up to the number of suns, maps or pixels, halve a
+    // list, or end with the strategy's look-up, which returns at most as many lights as a `u32` counts. Loops in look-ups end: those of
     // `assign` do, and the strategy's author guarantees it of its own. The other passes have no loop.
     #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;

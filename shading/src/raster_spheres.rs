@@ -13,6 +13,7 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     AreaModel, Cut, LightingOptions, Renderer, ShadingError, ShadowModel,
+    bound_shadows::mount_rays,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
@@ -76,14 +77,13 @@ impl RasterSpheres {
             .into());
         }
         let images = GBufferInputs::of_scene(&renderer.scene);
-        let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
+        let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
         let stages = wgpu::ShaderStages::FRAGMENT;
         let mut entries = images.layout(stages);
         entries.extend(LightingInputs::layout(inputs.bound(), stages));
         let layout = gpu.bind_group_layout("raster spheres", &entries);
-        let module = options
-            .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
-            .create(gpu, "package::raster_spheres")?;
+        let shader = options.set_flags(images.set_flags(lighting_modules(LISTS_GROUP)));
+        let module = mount_rays(shader, inputs.images()).create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
             pipeline(renderer, &layout, &module, [vertex, fragment], volumes)
         };
@@ -122,8 +122,13 @@ impl RasterSpheres {
             return Err(ShadingError::Orientation);
         }
         // Each fragment adds only one light, so each is checked separately.
+        let ray_rounds = renderer.shadows.ray_rounds();
         for light in LightTotals::of_each(lights) {
-            light.check(&renderer.gpu, self.options, LightReader::Stored(Storage::Lists))?;
+            light.with_rays(ray_rounds).check(
+                &renderer.gpu,
+                self.options,
+                LightReader::Stored(Storage::Lists),
+            )?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

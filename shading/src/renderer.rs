@@ -12,7 +12,7 @@ use crate::{
     loop_rounds::LightTotals,
     raster::{Orientation, RasterPipelines},
     resolve::{Resolve, SAMPLES},
-    shadows::ShadowMaps,
+    shadows::Shadows,
     shared_passes::SharedPasses,
     targets::Targets,
 };
@@ -36,10 +36,8 @@ pub struct Renderer {
     shared: SharedPasses,
     /// What is drawn over the opaque surfaces.
     pub(crate) layers: Option<LayerScene>,
-    /// Maps of the lights' shadows.
-    pub(crate) shadows: Option<ShadowMaps>,
-    /// How far from their lights samples may lie that shadow maps serve, in ranges of the lights.
-    pub(crate) shadow_ranges: f32,
+    /// Maps of the lights' shadows, or what rays to the lights cross.
+    pub(crate) shadows: Shadows,
     /// The pass that makes the image of several samples per pixel.
     pub(crate) resolve: Option<Resolve>,
 }
@@ -72,8 +70,7 @@ impl Renderer {
             scene,
             targets,
             layers: None,
-            shadows: None,
-            shadow_ranges: f32::INFINITY,
+            shadows: Shadows::default(),
             resolve: None,
         })
     }
@@ -104,8 +101,7 @@ impl Renderer {
             surface_bounds: self.surface_bounds,
             shared,
             layers: None,
-            shadows: None,
-            shadow_ranges: f32::INFINITY,
+            shadows: Shadows::default(),
             resolve: None,
         })
     }
@@ -187,7 +183,7 @@ impl Renderer {
             (false, false, _) => SampleDomain::NearSurfaces,
         };
         let frame = Frame::new(view, lights);
-        let occluders = self.shadows.as_ref().and_then(ShadowMaps::occluders);
+        let occluders = self.shadows.occluders();
         let frame = occluders.map_or(frame, |occluders| frame.with_occluders(occluders));
         frame
             .sampled_at(samples)
@@ -219,10 +215,8 @@ impl Renderer {
             self.orientation = orientation;
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
-        self.lights = LightTotals::of_buffer(lights);
-        if let Some(maps) = &self.shadows {
-            maps.check_lights(lights)?;
-        }
+        self.lights = LightTotals::of_buffer(lights).with_rays(self.shadows.ray_rounds());
+        self.shadows.check_lights(lights)?;
         if let Some(layers) = &mut self.layers {
             layers.prepare(&self.gpu, view, self.surface_bounds)?;
         }

@@ -30,6 +30,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "specular_reach",
         "suns",
         "shadows",
+        "shadow_rays",
         "area_lod",
         "area_point",
         "area_mrp",

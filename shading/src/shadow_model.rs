@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 /// quads after one to four subdivisions (Dobetsberger 2025, section 6.1).
 pub const MAP_COUNTS: [u32; 6] = [1, 4, 9, 25, 81, 289];
 
+/// The accepted numbers of rays to each area light: those of maps, and the corners of three by three quads.
+pub const RAY_COUNTS: [u32; 7] = [1, 4, 9, 16, 25, 81, 289];
+
 /// The accepted numbers of taps: squares of 1 to 5 texels.
 pub const TAP_COUNTS: [u32; 5] = [1, 4, 9, 16, 25];
 
@@ -54,6 +57,12 @@ pub enum ShadowModel {
         /// The most maps of each area light, [`FEWEST_ADAPTIVE`] to [`MOST_ADAPTIVE`].
         most: u32,
     },
+    /// Rays through compound deep images of the scene (Archer, Leach, Knowles 2019) to the points from which maps would be
+    /// drawn, in place of maps ([`Renderer::cast_rays_through`](crate::Renderer::cast_rays_through)).
+    Cdi {
+        /// Rays to each area light: one of [`RAY_COUNTS`]. Other lights get one.
+        rays: u32,
+    },
 }
 
 impl ShadowModel {
@@ -67,28 +76,34 @@ impl ShadowModel {
         matches!(self, Self::Adaptive { .. })
     }
 
-    /// Maps for each area light, or the most of them if frames subdivide; 0 without shadows.
+    /// Whether rays take the place of maps.
+    pub fn casts_rays(self) -> bool {
+        matches!(self, Self::Cdi { .. })
+    }
+
+    /// Maps or rays for each area light, or the most maps if frames subdivide; 0 without shadows.
     pub fn maps(self) -> u32 {
         match self {
             Self::None => 0,
             Self::Maps { maps, .. } | Self::Adaptive { most: maps, .. } => maps,
+            Self::Cdi { rays } => rays,
         }
     }
 
-    /// Texels on a side of each map face; 0 without shadows.
+    /// Texels on a side of each map face; 0 without maps.
     pub fn px(self) -> u32 {
         match self {
-            Self::None => 0,
+            Self::None | Self::Cdi { .. } => 0,
             Self::Maps { px, .. } | Self::Adaptive { px, .. } => px,
         }
     }
 
-    /// Taps for each map; 0 without shadows.
+    /// Taps for each map, or 1 for each ray; 0 without shadows.
     pub fn taps(self) -> u32 {
         match self {
             Self::None => 0,
             Self::Maps { taps, .. } => taps,
-            Self::Adaptive { .. } => 1,
+            Self::Adaptive { .. } | Self::Cdi { .. } => 1,
         }
     }
 
@@ -105,6 +120,7 @@ impl ShadowModel {
                     && BAND_DIVISORS.contains(&down)
                     && (FEWEST_ADAPTIVE..=MOST_ADAPTIVE).contains(&most)
             }
+            Self::Cdi { rays } => RAY_COUNTS.contains(&rays),
         };
         if is_sound { Ok(()) } else { Err(refused(&self.to_string())) }
     }
@@ -117,6 +133,7 @@ impl fmt::Display for ShadowModel {
             Self::Maps { maps, px, taps: 1 } => write!(f, "maps:{maps},{px}"),
             Self::Maps { maps, px, taps } => write!(f, "maps:{maps},{px},pcf{taps}"),
             Self::Adaptive { px, down, most } => write!(f, "adaptive:{px},{down},{most}"),
+            Self::Cdi { rays } => write!(f, "cdi:{rays}"),
         }
     }
 }
@@ -131,6 +148,7 @@ impl FromStr for ShadowModel {
             _ => match text.split_once(':') {
                 Some(("maps", numbers)) => maps_of(numbers),
                 Some(("adaptive", numbers)) => adaptive_of(numbers),
+                Some(("cdi", rays)) => number(rays).map(|rays| Self::Cdi { rays }),
                 _ => None,
             },
         };
@@ -178,9 +196,9 @@ impl From<ShadowModel> for String {
 }
 
 /// The accepted models.
-pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK or adaptive:PX,DOWN,MOST, with N of 1, 4, 9, \
-    25, 81 or 289 maps for each area light, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 taps, a test of \
-    bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
+pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, adaptive:PX,DOWN,MOST or cdi:N, with N of 1, \
+    4, 9, 25, 81 or 289 maps for each area light, or as many rays or 16, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 \
+    or 25 taps, a test of bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
 
 fn refused(value: &str) -> AssignError {
     AssignError::Parameter {
@@ -207,6 +225,7 @@ mod tests {
                 models.push(ShadowModel::Adaptive { px: 32 * most.min(128), down, most });
             }
         }
+        models.extend(RAY_COUNTS.map(|rays| ShadowModel::Cdi { rays }));
         for model in models {
             model.check().unwrap();
             assert_eq!(model.to_string().parse::<ShadowModel>().unwrap(), model);
@@ -247,11 +266,19 @@ mod tests {
             "adaptive:256,8,290",
             "adaptive:256,8,+64",
             "Adaptive:256,8,64",
+            "cdi",
+            "cdi:",
+            "cdi:0",
+            "cdi:5",
+            "cdi:+4",
+            "cdi:4,256",
+            "CDI:4",
+            "cdi:99999999999",
         ] {
             let error = bad.parse::<ShadowModel>().unwrap_err().to_string();
             let expected = format!("shadow model is {bad}: it must be none, maps:N,PX");
             assert!(error.starts_with(&expected), "{error}");
-            for count in MAP_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS) {
+            for count in RAY_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS) {
                 assert!(error.contains(&count.to_string()), "{count} is not named: {error}");
             }
         }

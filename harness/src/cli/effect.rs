@@ -5,7 +5,9 @@
 
 use clap::{ArgMatches, parser::ValueSource};
 
-use super::{CdiArgs, CliError, ExplainArgs, Invocation, RangeChoice, StageArgs, StudyArgs};
+use super::{
+    CdiArgs, CliError, CompareArgs, ExplainArgs, Invocation, RangeChoice, StageArgs, StudyArgs,
+};
 
 /// Options, when they have an effect, and what they need.
 struct Rule<A> {
@@ -19,6 +21,9 @@ struct Rule<A> {
 const CASTING: &str = "--vpls N above 0 and a rule of --ranges that casts rays: average, maximum, \
                         random-discard or constant-discard";
 
+const CASTING_ANY: &str = "--shadows cdi:N, or --vpls N above 0 and a rule of --ranges that casts rays: average, \
+                           maximum, random-discard or constant-discard";
+
 const SPEED: &[&str] = &["speed", "moved-by"];
 const MOTION: &str = "--motion LAW";
 
@@ -28,19 +33,7 @@ const STAGE: &[Rule<StageArgs>] = &[
         has_effect: |args| args.bounce.vpls > 0,
         needs: "--vpls N above 0",
     },
-    Rule {
-        options: &[
-            "directions",
-            "spread",
-            "deep-size",
-            "oversampling",
-            "build",
-            "rays",
-            "primary-ray",
-        ],
-        has_effect: |args| args.bounce.vpls > 0 && args.bounce.ranges.casts(),
-        needs: CASTING,
-    },
+    Rule { options: &["rays", "primary-ray"], has_effect: casts_ranges, needs: CASTING },
     Rule {
         options: &["range-scale", "correct-rays"],
         has_effect: |args| args.bounce.vpls > 0 && args.bounce.ranges.measures(),
@@ -79,6 +72,27 @@ const STAGE: &[Rule<StageArgs>] = &[
     },
 ];
 
+const DEEP: &[&str] = &["directions", "spread", "deep-size", "oversampling", "build"];
+
+const DEEP_RANGES: &[Rule<StageArgs>] =
+    &[Rule { options: DEEP, has_effect: casts_ranges, needs: CASTING }];
+
+const DEEP_COMPARE: &[Rule<CompareArgs>] = &[Rule {
+    options: DEEP,
+    has_effect: |args| args.shadows.casts_rays() || casts_ranges(&args.stage),
+    needs: CASTING_ANY,
+}];
+
+const DEEP_EXPLAIN: &[Rule<ExplainArgs>] = &[Rule {
+    options: DEEP,
+    has_effect: |args| args.shadows.casts_rays() || casts_ranges(&args.stage),
+    needs: CASTING_ANY,
+}];
+
+fn casts_ranges(args: &StageArgs) -> bool {
+    args.bounce.vpls > 0 && args.bounce.ranges.casts()
+}
+
 const EXPLAIN: &[Rule<ExplainArgs>] = &[
     Rule { options: &["frames"], has_effect: |args| args.path, needs: "--path" },
     Rule {
@@ -102,17 +116,27 @@ pub(super) fn check(asked: &Invocation, matches: &ArgMatches) -> Result<(), CliE
     // Options stand after the name of the command, or alone where `compare` is not named.
     let matches = matches.subcommand().map_or(matches, |(_, options)| options);
     match asked {
-        Invocation::Compare(args) => check_rules(STAGE, &args.stage, matches),
-        Invocation::Explain(args) => {
-            check_rules(EXPLAIN, args, matches)?;
+        Invocation::Compare(args) => {
+            check_rules(DEEP_COMPARE, args, matches)?;
             check_rules(STAGE, &args.stage, matches)
         }
-        Invocation::Advise(args) => check_rules(STAGE, &args.stage, matches),
-        Invocation::Truth(args) => check_rules(STAGE, &args.stage, matches),
+        Invocation::Explain(args) => {
+            check_rules(EXPLAIN, args, matches)?;
+            check_rules(DEEP_EXPLAIN, args, matches)?;
+            check_rules(STAGE, &args.stage, matches)
+        }
+        Invocation::Advise(args) => check_stage(&args.stage, matches),
+        Invocation::Truth(args) => check_stage(&args.stage, matches),
         Invocation::Study(args) => check_rules(STUDY, args, matches),
         Invocation::Cdi(args) => check_rules(CDI, args, matches),
         _ => Ok(()),
     }
+}
+
+/// Of commands whose deep images only find ranges.
+fn check_stage(args: &StageArgs, matches: &ArgMatches) -> Result<(), CliError> {
+    check_rules(DEEP_RANGES, args, matches)?;
+    check_rules(STAGE, args, matches)
 }
 
 fn check_rules<A>(rules: &[Rule<A>], args: &A, matches: &ArgMatches) -> Result<(), CliError> {

@@ -85,20 +85,22 @@ impl VplArgs {
     }
 }
 
-/// The deep images.
+/// The deep images: of ranges, and of rays that find shadows.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct DeepArgs {
     /// Directions of the deep images over the hemisphere: stacks x slices, each 1 to 64
-    #[arg(long, value_name = "SxS", default_value = "13x13", allow_hyphen_values = true, help_heading = DEEP, hide_short_help = true)]
-    pub directions: DirectionCounts,
+    ///
+    /// [default: 13x13, or 8x8 for shadows]
+    #[arg(long, value_name = "SxS", allow_hyphen_values = true, help_heading = DEEP, hide_short_help = true)]
+    pub directions: Option<DirectionCounts>,
 
-    /// How to spread the directions over the hemisphere
-    #[arg(long, value_name = "HOW", default_value = "stacks", value_parser = named(SPREADS, Spread::name), help_heading = DEEP, hide_short_help = true)]
-    pub spread: Spread,
+    /// How to spread the directions over the hemisphere [default: stacks, or squares for shadows]
+    #[arg(long, value_name = "HOW", value_parser = named(SPREADS, Spread::name), help_heading = DEEP, hide_short_help = true)]
+    pub spread: Option<Spread>,
 
-    /// Pixels along a side of each deep image, 4 to 1,024
-    #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::whole_from(4, 1024), help_heading = DEEP, hide_short_help = true)]
-    pub deep_size: u32,
+    /// Pixels along a side of each deep image, 4 to 1,024 [default: 64, or 512 for shadows]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(4, 1024), help_heading = DEEP, hide_short_help = true)]
+    pub deep_size: Option<u32>,
 
     /// Surface samples along each side of a pixel of the deep images, 1 to 8
     ///
@@ -106,9 +108,9 @@ pub struct DeepArgs {
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 8), help_heading = DEEP, hide_short_help = true)]
     pub oversampling: u32,
 
-    /// How to build the deep images
-    #[arg(long, value_name = "HOW", default_value = "compute", help_heading = DEEP, hide_short_help = true)]
-    pub build: BuildChoice,
+    /// How to build the deep images [default: compute, or per-direction-batched for shadows]
+    #[arg(long, value_name = "HOW", help_heading = DEEP, hide_short_help = true)]
+    pub build: Option<BuildChoice>,
 }
 
 const PRIMARY_RAYS: [(Primary, &str); 2] = [

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use assign::LightOrder;
 use serde::{Deserialize, Serialize};
 
-use super::{Mode, Planes};
+use super::{DeepImages, Mode, Planes};
 
 /// The scene, the lights and the camera: the same in all records of a run, except [`mode`](Self::mode), of
 /// which a run may have several.
@@ -132,30 +132,34 @@ pub struct LayerSetting {
     pub fog_per_m: Option<f64>,
 }
 
-/// The shadow maps of the lights.
+/// The shadow maps of the lights, or the rays in place of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowSetting {
-    /// The model that was asked for, such as `maps:9,512`.
+    /// The model that was asked for, such as `maps:9,512` or `cdi:9`.
     pub model: String,
     /// Maps for each area light, or the most of them if frames subdivided. Fewer than the model's if more did not fit
-    /// the atlas.
+    /// the atlas. With `cdi:N`, rays to each area light.
     pub maps_per_area_light: u32,
-    /// Maps of all lights.
+    /// Maps of all lights. With `cdi:N`, points of all lights, to which rays are cast.
     pub maps: u32,
-    /// Faces of all maps.
+    /// Faces of all maps; 0 with `cdi:N`.
     pub faces: u32,
-    /// Width and height of the atlas, texels of 4 bytes.
+    /// Width and height of the atlas, texels of 4 bytes; zeros with `cdi:N`.
     pub atlas_px: [u32; 2],
     /// Bytes of the depths by which strategies with `/occ` find hidden lights; absent without such strategies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub occluder_bytes: Option<u64>,
     /// The time that drawing all maps once takes, ms: on a GPU the median of seven draws. It is in no other time. With
-    /// `/occ`, it includes the pass `occluders`. Absent in older results.
+    /// `/occ`, it includes the pass `occluders`. With `cdi:N`, the time of building the deep images once. Absent in older
+    /// results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draw_ms: Option<f64>,
     /// With an adaptive model: how frames subdivided the lights. Absent otherwise, and in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptive: Option<AdaptiveSetting>,
+    /// With `cdi:N`: the deep images that rays cross. Absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deep: Option<DeepImages>,
 }
 
 /// How frames subdivided rectangles, before the frames on the clock. A frame of lights that move would take

@@ -40,7 +40,11 @@ impl Results {
                 &mut record.note,
             ];
             all.extend(known.into_iter().flatten());
-            all.extend(record.setting.shadows.iter_mut().map(|shadows| &mut shadows.model));
+            if let Some(shadows) = &mut record.setting.shadows {
+                all.push(&mut shadows.model);
+                let deep = shadows.deep.iter_mut();
+                all.extend(deep.flat_map(|deep| [&mut deep.build, &mut deep.spread]));
+            }
             let motion = record.setting.motion.iter_mut();
             all.extend(motion.flat_map(|motion| [&mut motion.law, &mut motion.moved_by]));
             if let Some(vpls) = &mut record.indirect {

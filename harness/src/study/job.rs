@@ -101,9 +101,9 @@ impl Job {
         self.command.get(at + 1).map(String::as_str)
     }
 
-    /// How large its command makes the scene, and how many copies of it stand side by side.
-    pub(crate) fn scene_extent(&self) -> [Option<&str>; 2] {
-        ["--scene-scale", "--replicate"].map(|option| self.option(option))
+    /// What its command makes of the scene: its scale, its copies, and the roughness of its surfaces.
+    pub(crate) fn scene_changes(&self) -> [Option<&str>; 3] {
+        ["--scene-scale", "--replicate", "--roughness"].map(|option| self.option(option))
     }
 
     /// Sets the settings that pages and claims read, for files of version 1, which have none. There the

@@ -248,7 +248,7 @@ impl Done {
             ));
         }
         let is_same_scene =
-            |known: &Job| known.scene == job.scene && known.scene_extent() == job.scene_extent();
+            |known: &Job| known.scene == job.scene && known.scene_changes() == job.scene_changes();
         let hash = |results: &Results| {
             let record = results.records.first().map(|record| record.setting.scene_hash.clone());
             record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))

@@ -9,7 +9,7 @@ use scenes::Scene;
 use shading::{Renderer, WorldTriangles, rsm_view};
 
 use super::ranges::{Ranges, settings};
-use crate::{cli::StageArgs, deep::figures, error::HarnessError, prefixed::Prefixed, results};
+use crate::{cli::StageArgs, deep::DeepChoice, error::HarnessError, prefixed::Prefixed, results};
 
 /// Half the width of the middle of a scene, as a share of the width of its core.
 const MIDDLE_SHARE: f32 = 0.25;
@@ -95,7 +95,8 @@ impl Bounce {
 
     /// What is stored of its deep images, if rays are cast.
     pub(super) fn deep(&self, args: &StageArgs) -> Option<results::DeepImages> {
-        self.ranges.deep().map(|images| figures(images, &args.bounce.deep))
+        let choice = DeepChoice::of_ranges(&args.bounce.deep);
+        self.ranges.deep().map(|images| choice.figures(images))
     }
 }
 

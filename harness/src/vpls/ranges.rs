@@ -13,7 +13,7 @@ use shading::WorldTriangles;
 
 use crate::{
     cli::{RangeChoice, Span, StageArgs, VplArgs},
-    deep::{settings_of, settle, triangles_of},
+    deep::{DeepChoice, triangles_of},
     error::HarnessError,
 };
 
@@ -108,8 +108,8 @@ impl Ranges {
             Ok::<_, HarnessError>(Some(random))
         };
         if let (true, Some(triangles)) = (args.0.ranges.casts(), triangles) {
-            let mut images = DeepImages::new(gpu, settings_of(&args.0.deep)?)?;
-            settle(gpu, &mut images, &triangles_of(&triangles))?;
+            let mut images = DeepImages::new(gpu, DeepChoice::of_ranges(&args.0.deep).settings()?)?;
+            images.settle(gpu, &triangles_of(&triangles))?;
             let caster = RangeCaster::new(gpu, &images, rule_of(args.0))?;
             let images = Box::new(images);
             let drawn = drawn(RandomRanges::keeping_unknown(gpu)?)?;

@@ -175,7 +175,7 @@ fn particle_pipeline(
     let gpu = &renderer.gpu;
     let mut shader =
         lighting_modules(LISTS_GROUP).flag("captures", lists.is_none()).flag("fogged", fogged);
-    if let Some(Lists { lookup, options }) = lists {
+    if let Some(Lists { lookup, options, .. }) = lists {
         shader = options.set_flags(shader).strategy(lookup.module);
         shader = shader.without_subgroups().looks_up_anywhere();
     }

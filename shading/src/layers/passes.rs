@@ -108,7 +108,7 @@ impl LayerPasses {
 
 fn fog_light(
     renderer: &Renderer,
-    Lists { lookup, options }: Lists<'_>,
+    Lists { lookup, options, .. }: Lists<'_>,
     inputs: &LightingInputs,
 ) -> Result<(wgpu::ComputePipeline, wgpu::BindGroupLayout), ShadingError> {
     let gpu = &renderer.gpu;

@@ -8,16 +8,18 @@ pub struct ShadowFigures {
     /// The model that was asked for.
     pub model: ShadowModel,
     /// Maps for each area light, or the most of them if frames subdivide. Fewer than asked for if more did not fit
-    /// the atlas.
+    /// the atlas. With rays, points of each area light.
     pub maps_per_area_light: u32,
-    /// Maps of all lights at present.
+    /// Maps of all lights at present. With rays, points of all lights.
     pub maps: u32,
     /// Faces of all maps at present.
     pub faces: u32,
-    /// Width and height of the atlas, texels.
+    /// Width and height of the atlas, texels; zeros with rays.
     pub atlas_px: [u32; 2],
     /// Bytes of what hides lights from groups ([`Renderer::find_occluders`](crate::Renderer::find_occluders)); 0 without it.
     pub occluder_bytes: u64,
+    /// Bytes of the deep images that rays cross; 0 with maps.
+    pub image_bytes: u64,
 }
 
 impl ShadowFigures {

@@ -72,10 +72,12 @@ mod cast;
 mod clear_face;
 mod face;
 mod figures;
+mod held;
 mod occluders;
 mod plan;
 mod points;
 mod quadtree;
+mod rays;
 mod rectangle;
 mod refine;
 mod sight;
@@ -98,9 +100,11 @@ pub use adaptive::ShadowRefinement;
 use banding::Drawn;
 use face::Face;
 pub use figures::ShadowFigures;
+pub(crate) use held::Shadows;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::Plan;
+pub use rays::shadow_images;
 use sight::Sight;
 use views::Views;
 
@@ -148,15 +152,8 @@ impl ShadowMaps {
         lights: &LightBuffer,
         (model, ranges): (ShadowModel, f32),
     ) -> Result<Self, ShadingError> {
-        check_device(gpu)?;
-        if lights.order().is_on_gpu() || lights.live_count().is_some() {
-            return Err(AssignError::Unsupported {
-                strategy: format!("shadow model {model}"),
-                asked: "lights that the GPU moves, makes or orders".into(),
-                reason: "the CPU plans the maps, and must know the lights and their order".into(),
-            }
-            .into());
-        }
+        check_device(gpu, "shading with shadow maps", STORAGE_BUFFERS)?;
+        check_known(lights, model)?;
         let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
         let mut plan = Plan::new(lights.lights(), model, most_px)?;
         let adaptive = Adaptive::new(gpu, frame.layout(), &mut plan, lights.lights(), model)?;
@@ -167,6 +164,7 @@ impl ShadowMaps {
             faces: plan.faces.len() as u32,
             atlas_px: plan.size,
             occluder_bytes: 0,
+            image_bytes: 0,
         };
         let records_bytes: &[u8] = cast_slice(&plan.records);
         let records = gpu.storage("shadow records", records_bytes.len() as u64)?;
@@ -215,14 +213,6 @@ impl ShadowMaps {
     /// What lighting reads.
     pub(crate) fn bound(&self) -> &BoundMaps {
         &self.bound
-    }
-
-    /// Refuses lights other than those that the maps were made for.
-    pub(crate) fn check_lights(&self, lights: &LightBuffer) -> Result<(), ShadingError> {
-        let is_same = !lights.order().is_on_gpu()
-            && lights.live_count().is_none()
-            && lights.lights() == self.lights;
-        if is_same { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 
     /// Whether frames subdivide rectangles.
@@ -347,16 +337,29 @@ impl ShadowMaps {
     }
 }
 
-fn check_device(gpu: &Gpu) -> Result<(), AssignError> {
+fn check_device(gpu: &Gpu, what: &str, buffers: u32) -> Result<(), AssignError> {
     let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
-    if has >= STORAGE_BUFFERS {
+    if has >= buffers {
         return Ok(());
     }
     Err(AssignError::Limit {
-        strategy: "shading with shadow maps".into(),
+        strategy: what.into(),
         limit: "max_storage_buffers_per_shader_stage",
-        needs: STORAGE_BUFFERS.into(),
+        needs: buffers.into(),
         has: has.into(),
+    })
+}
+
+/// Refuses lights whose slots only the GPU knows.
+fn check_known(lights: &LightBuffer, model: ShadowModel) -> Result<(), AssignError> {
+    if !lights.order().is_on_gpu() && lights.live_count().is_none() {
+        return Ok(());
+    }
+    Err(AssignError::Unsupported {
+        strategy: format!("shadow model {model}"),
+        asked: "lights that the GPU moves, makes or orders".into(),
+        reason: "the CPU chooses points of the lights, and must know the lights and their order"
+            .into(),
     })
 }
 

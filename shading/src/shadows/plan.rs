@@ -161,7 +161,7 @@ impl Plan {
         let (px, taps) = (model.px(), model.taps());
         // The numbers of maps to try, from the most.
         let counts: Vec<u32> = match model {
-            ShadowModel::None => {
+            ShadowModel::None | ShadowModel::Cdi { .. } => {
                 return Err(AssignError::Parameter {
                     field: "shadow model".into(),
                     value: model.to_string(),
@@ -277,12 +277,7 @@ impl Planner {
             Reach::Half => (0.0, 1 << 31),
             Reach::All => (round_spread(light), 0),
         };
-        let axis = |axis: DVec3, last| [bits(axis.x), bits(axis.y), bits(axis.z), last];
-        [
-            axis(axes.x_axis, first_map),
-            axis(axes.y_axis, points.len() as u32 | half),
-            axis(axes.z_axis, bits(spread)),
-        ]
+        axes_record(axes, first_map, points.len() as u32 | half, spread)
     }
 
     /// Adds the faces of a map; returns the place of each in the atlas, x in the low half and y in the high one.
@@ -322,13 +317,19 @@ impl Planner {
     }
 }
 
+/// The vectors of a light: its axes, the vector of its first map or point, their number, and its spread.
+pub(super) fn axes_record(axes: DMat3, first: u32, count: u32, spread: f64) -> [[u32; 4]; 3] {
+    let axis = |axis: DVec3, last| [bits(axis.x), bits(axis.y), bits(axis.z), last];
+    [axis(axes.x_axis, first), axis(axes.y_axis, count), axis(axes.z_axis, bits(spread))]
+}
+
 /// The first vector of a map: its point, and the weight of that.
 pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
     [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
 }
 
 /// What `shadow.wesl` calls `SPHERE` and `LINE`; 0 for other lights.
-fn round_spread(light: &Light) -> f64 {
+pub(super) fn round_spread(light: &Light) -> f64 {
     let LightShape::Area(emitter) = &light.shape else { return 0.0 };
     match emitter.outline() {
         Outline::Sphere => -1.0,
@@ -343,7 +344,7 @@ fn bits(value: f64) -> u32 {
 }
 
 /// Unit axes of a light, world space. z is its direction or normal, if it has one.
-fn axes_of(light: &Light) -> DMat3 {
+pub(super) fn axes_of(light: &Light) -> DMat3 {
     let around = |z: DVec3| {
         let z = z.normalize_or(DVec3::Z);
         let x = z.any_orthonormal_vector();

@@ -20,10 +20,10 @@ impl LightPoint {
     pub(super) const MIDDLE: Self = Self { offset: DVec3::ZERO, weight: 1 };
 }
 
-/// `count` points of an emitter, one of [`MAP_COUNTS`](crate::MAP_COUNTS).
+/// `count` points of an emitter, one of [`MAP_COUNTS`](crate::MAP_COUNTS) or [`RAY_COUNTS`](crate::RAY_COUNTS).
 ///
 /// A rectangle's points are the corners of its quads: 4 of the whole, and 9, 25, 81 or 289 after one to four
-/// subdivisions of every quad (Dobetsberger 2025, section 6.1). A quad's irradiance is the mean over its corners, and a
+/// subdivisions of every quad (Dobetsberger 2025, section 6.1). 16 are the corners of three by three quads. A quad's irradiance is the mean over its corners, and a
 /// rectangle's is the sum over its quads. So a point has the weight of the quads that share it: 1 at a corner, 2 on an
 /// edge, 4 inside. This is the trapezoidal rule. The equal weights of equation 6.2 would give the outline too much.
 ///
@@ -81,12 +81,12 @@ fn polygon_point(emitter: &Emitter, ix: u32, count: u32) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::MAP_COUNTS;
+    use crate::RAY_COUNTS;
 
     #[test]
     fn a_rectangle_gets_the_corners_of_its_quads() {
         let emitter = Emitter::rectangle(Vec3::X * 2.0, Vec3::Y);
-        for count in MAP_COUNTS.into_iter().skip(1) {
+        for count in RAY_COUNTS.into_iter().skip(1) {
             let points = points_of(&emitter, count);
             assert_eq!(points.len() as u32, count);
             // Every quad counts four corners.
@@ -98,7 +98,7 @@ mod tests {
                 assert_eq!(found, Some(1), "{corner} of {count}");
             }
             let middle = points.iter().find(|p| p.offset == DVec3::ZERO).map(|p| p.weight);
-            assert_eq!(middle, (count > 4).then_some(4));
+            assert_eq!(middle, (count.isqrt() % 2 == 1).then_some(4));
         }
         assert_eq!(points_of(&emitter, 1), [LightPoint::MIDDLE]);
     }
@@ -109,7 +109,7 @@ mod tests {
         let corners = [(-1.0, 0.0), (0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)];
         let corners = corners.map(|(x, y)| Vec3::new(x, y, 0.0));
         let (emitter, position) = Emitter::polygon(&corners).unwrap();
-        for count in MAP_COUNTS {
+        for count in RAY_COUNTS {
             let points = points_of(&emitter, count);
             assert_eq!(points.len() as u32, count);
             for point in &points {

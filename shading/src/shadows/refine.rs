@@ -28,11 +28,11 @@ impl Renderer {
         view: &View,
         passes: &mut dyn Passes,
     ) -> Result<ShadowRefinement, ShadingError> {
-        let Some(maps) = &mut self.shadows else { return Ok(ShadowRefinement::default()) };
+        let Some(maps) = &mut self.shadows.maps else { return Ok(ShadowRefinement::default()) };
         let found = maps.refine(view, &self.scene, &self.scene_group, passes);
         if found.is_err() {
             // The trees know of maps that are not drawn.
-            self.shadows = None;
+            self.shadows.maps = None;
         }
         found
     }
@@ -56,7 +56,7 @@ impl Renderer {
         self.targets.check_holds(view.viewport)?;
         let Self { gpu, frame, targets, shadows, .. } = self;
         let drawn = Drawn { gpu, frame, targets, viewport: view.viewport };
-        shadows.as_mut().map_or(Ok(false), |maps| maps.record_banding(drawn, passes))
+        shadows.maps.as_mut().map_or(Ok(false), |maps| maps.record_banding(drawn, passes))
     }
 
     /// Draws depth and G-buffer of the prepared view until the maps of all lights have settled. All images of this
@@ -80,7 +80,7 @@ impl Renderer {
                 self.record_depth(view, &mut passes);
                 self.record_gbuffer(view, &mut passes);
                 self.record_banding(view, &mut passes)?;
-                found.is_settled = !self.shadows.as_ref().is_some_and(ShadowMaps::has_tests);
+                found.is_settled = !self.shadows.maps.as_ref().is_some_and(ShadowMaps::has_tests);
             }
             gpu.queue.submit([encoder.finish()]);
             gpu.wait()?;
@@ -92,12 +92,12 @@ impl Renderer {
     }
 
     fn has_adaptive_shadows(&self) -> bool {
-        self.shadows.as_ref().is_some_and(ShadowMaps::is_adaptive)
+        self.shadows.maps.as_ref().is_some_and(ShadowMaps::is_adaptive)
     }
 
     /// Refuses several samples per pixel.
     fn check_banding(&self) -> Result<(), ShadingError> {
-        match &self.shadows {
+        match &self.shadows.maps {
             Some(maps) if maps.is_adaptive() => {
                 let model = maps.figures().model;
                 Ok(self.check_one_sample(&format!("shadow model {model}"))?)

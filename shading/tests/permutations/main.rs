@@ -3,11 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 mod layers;
+mod linked;
 mod shadows;
 
 use std::collections::BTreeSet;
 
-use assign::{LightReader, Storage, StrategyWesl, conformance::LinkedModule};
+use assign::{LightReader, Storage, StrategyWesl};
+use linked::{link, link_with};
 
 /// A strategy's look-up: name, WESL, bindings.
 type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
@@ -68,49 +70,6 @@ fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
     };
     let with = |set: &Flags| models.iter().map(|model| areas(set, model)).collect::<Vec<Flags>>();
     sets.iter().flat_map(|set| with(set).into_iter().chain([set.clone()])).collect()
-}
-
-/// The properties of a linked and validated shader.
-#[derive(Debug, PartialEq)]
-struct Linked {
-    what: String,
-    entry_points: BTreeSet<String>,
-    /// Group and binding of the resources that the entry points use.
-    bindings: BTreeSet<(u32, u32)>,
-    source: String,
-}
-
-fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
-    let what = format!("{root}, {flags:?}, {:?}", look_up.map(|(name, ..)| name));
-    let mut shader = shading::lighting_shader();
-    for flag in flags {
-        shader = shader.flag(flag, true);
-    }
-    if let Some((_, wesl, _)) = look_up {
-        shader = shader.strategy(wesl);
-    }
-    let source = shader.link(root).unwrap_or_else(|e| panic!("{what}: {e}"));
-    let linked = LinkedModule::new(&what, &source);
-    let bindings = linked.used_bindings();
-    let entry_points = linked.module().entry_points.iter().map(|e| e.name.clone()).collect();
-    Linked { what, entry_points, bindings, source }
-}
-
-impl Linked {
-    /// The bindings that are used in a group.
-    fn used(&self, group: u32) -> Vec<u32> {
-        self.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
-    }
-
-    /// Checks a pass over pixels that reads no list: group 1 is unused, and group 2 has `always` and those of
-    /// `more` that are on.
-    fn check_pixels(&self, always: &[u32], more: &[(u32, bool)]) {
-        let more = more.iter().filter(|(_, is_used)| *is_used).map(|&(binding, _)| binding);
-        let mut expected: Vec<u32> = always.iter().copied().chain(more).collect();
-        expected.sort_unstable();
-        assert_eq!(self.used(2), expected, "{}: bindings of group 2", self.what);
-        assert_eq!(self.used(1), [0; 0], "{}: group 1 is not bound", self.what);
-    }
 }
 
 /// Links a pass over the triangles. Checks its entry points, and that it reads only the textures of

@@ -1,6 +1,8 @@
 //! The shaders of shadow maps, and shaders without any.
 
-use super::{Flags, LOOK_UPS, link, subsets, with_areas};
+use assign_cdi::{DeepImages, Directions, Spread};
+
+use super::{Flags, LOOK_UPS, link, link_with, subsets, with_areas};
 
 /// Bindings of the atlas and of the records.
 const MAPS: [u32; 2] = [26, 27];
@@ -34,4 +36,27 @@ fn lighting_with_shadows_reads_the_maps() {
     // The test for bands reads depth, normals and maps, whatever the options of lighting are.
     let used = link("package::shadow_banding", &Flags::new(), None).used(2);
     assert_eq!(used, [0, 2, MAPS[0], MAPS[1], 28, 29]);
+}
+
+/// Bindings of the points of lights, and of the deep images.
+const RAYS: [u32; 5] = [27, 30, 31, 33, 34];
+
+#[test]
+fn lighting_with_rays_reads_deep_images_and_no_maps() {
+    let directions = Directions::new(Spread::Squares, 8, 8).unwrap();
+    let settings = shading::shadow_images(directions, 64);
+    for flags in [Flags::new(), Flags::from(["spots", "areas", "area_point"])] {
+        let traced: Flags = flags.iter().copied().chain(["shadows", "shadow_rays"]).collect();
+        for root in ["package::deferred", "package::contributions", "package::raster_spheres"] {
+            let mount = |shader| DeepImages::mount_at(&settings, shader, (2, 30));
+            let look_up = (root == "package::deferred").then_some(LOOK_UPS[1]);
+            let used = link_with(root, &traced, look_up, mount).used(2);
+            let plain = link(root, &flags, look_up);
+            assert!(!plain.source.contains("ray_images"), "{root} {flags:?} has code of rays");
+            let (of_rays, rest): (Vec<u32>, Vec<u32>) =
+                used.into_iter().partition(|binding| RAYS.contains(binding));
+            assert_eq!(of_rays, RAYS, "{root} {flags:?}");
+            assert_eq!(rest, plain.used(2), "{root} {flags:?}: other bindings");
+        }
+    }
 }

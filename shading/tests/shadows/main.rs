@@ -8,22 +8,33 @@ mod adaptive;
 mod common;
 mod errors;
 mod occlusion;
+mod rays;
 mod strategies;
 mod truth;
 mod walls;
 
+use std::sync::Arc;
+
 use assign::{
     Assignment, Emitter, EncoderPasses, Everything, Gpu, Light, LightBuffer, LightShape, View,
 };
+use assign_cdi::{Directions, Spread};
 use glam::Vec3;
 use scenes::Scene;
 use shading::{
-    HdrImage, Lighting, LightingOptions, Mode, Renderer, ShadowModel, record_before_lighting,
-    traced::GBufferSamples,
+    HdrImage, Lighting, LightingOptions, Mode, Renderer, ShadowModel, WorldTriangles,
+    record_before_lighting, shadow_images, traced::GBufferSamples,
 };
 
 fn maps(maps: u32, px: u32, taps: u32) -> ShadowModel {
     ShadowModel::Maps { maps, px, taps }
+}
+
+/// Has rays of shadows cross images of so many directions along each axis and pixels along each side.
+fn cast_rays_through(renderer: &mut Renderer, scene: &Scene, directions: u32, size_px: u32) {
+    let triangles = WorldTriangles::new(renderer.gpu(), scene).unwrap();
+    let directions = Directions::new(Spread::Squares, directions, directions).unwrap();
+    renderer.cast_rays_through(Arc::new(triangles), shadow_images(directions, size_px));
 }
 
 /// One frame of a strategy on a renderer whose view and lights are prepared.
@@ -58,6 +69,9 @@ fn images(
 ) -> (Vec<HdrImage>, GBufferSamples) {
     let lights = LightBuffer::new(gpu, lights).unwrap();
     let mut renderer = Renderer::new(gpu, scene, view).unwrap();
+    if models.iter().any(|model| model.casts_rays()) {
+        cast_rays_through(&mut renderer, scene, 6, 256);
+    }
     let mut strategy = Everything::new(gpu).unwrap();
     let images = models.iter().map(|model| {
         renderer.cast_shadows(&lights, *model).unwrap();

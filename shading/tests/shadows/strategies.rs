@@ -12,7 +12,7 @@ use shading::{
     Renderer, ShadowModel, light_pixel,
 };
 
-use crate::{common, draw, lamp, maps};
+use crate::{cast_rays_through, common, draw, lamp, maps};
 
 /// Lights of all kinds.
 fn lights() -> Vec<Light> {
@@ -41,6 +41,11 @@ fn shadows_differ_in_no_bit_between_strategies() {
     let maps = renderer.shadow_figures().unwrap().maps;
     assert!((30 + 2 * 4 + 1..30 + 2 * 25).contains(&maps), "{maps} maps");
     all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred]);
+    cast_rays_through(&mut renderer, &common::showcase(), 4, 32);
+    let model = ShadowModel::Cdi { rays: 4 };
+    let figures = renderer.cast_shadows(&lights, model).unwrap().unwrap();
+    assert_eq!((figures.maps, figures.faces, figures.fell_back()), (30 + 2 * 4, 0, false));
+    all_show_the_same(&mut renderer, &view, &lights, model, &[Mode::Deferred, Mode::Forward]);
 }
 
 /// Compares strategies with no culling, whose image shows the shadows.
@@ -89,19 +94,31 @@ fn light_volumes_and_single_lights_have_the_same_shadows() {
     let gpu = common::gpu();
     let view = common::view([96, 64]);
     let lights = LightBuffer::new(&gpu, &lights()).unwrap();
-    let kinds = lights.kinds();
     let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
-    let model = maps(4, 64, 1);
-    renderer.cast_shadows(&lights, model).unwrap();
-    renderer.prepare(&view, &lights).unwrap();
-    let mut everything = Everything::new(&gpu).unwrap();
-    let none = draw(&renderer, &view, &lights, &mut everything, Mode::Deferred, model);
+    cast_rays_through(&mut renderer, &common::showcase(), 4, 32);
+    for model in [maps(4, 64, 1), ShadowModel::Cdi { rays: 4 }] {
+        renderer.cast_shadows(&lights, model).unwrap();
+        renderer.prepare(&view, &lights).unwrap();
+        compare_volumes_and_single_lights(&renderer, &view, &lights, model);
+    }
+}
+
+fn compare_volumes_and_single_lights(
+    renderer: &Renderer,
+    view: &View,
+    lights: &LightBuffer,
+    model: ShadowModel,
+) {
+    let gpu = renderer.gpu();
+    let kinds = lights.kinds();
+    let mut everything = Everything::new(gpu).unwrap();
+    let none = draw(renderer, view, lights, &mut everything, Mode::Deferred, model);
     let options = LightingOptions { kinds, shadows: model, ..LightingOptions::default() };
-    let frame = renderer.frame(&view, &lights);
+    let frame = renderer.frame(view, lights);
     let entries: Vec<u32> = (0..lights.count()).map(|light| light | 0xc000_0000).collect();
     let mut lit = 0;
     for pixel in [[20, 50], [48, 40], [60, 50], [70, 20]] {
-        let found = light_pixel(&renderer, &frame, options, pixel, &entries).unwrap().unwrap();
+        let found = light_pixel(renderer, &frame, options, pixel, &entries).unwrap().unwrap();
         let sum = found.radiance.iter().fold(Vec3::ZERO, |sum, one| sum + Vec3::from(*one));
         let sum = sum + Vec3::from_slice(&found.surface.emission[..3]);
         let shown = Vec3::from(none.pixels[(pixel[1] * 96 + pixel[0]) as usize]);
@@ -110,14 +127,14 @@ fn light_volumes_and_single_lights_have_the_same_shadows() {
     }
     assert!(lit > 2, "{lit} pixels are lit");
     let (area, cut) = (AreaModel::default(), Cut::default());
-    let volumes = RasterSpheres::new(&renderer, kinds, area, cut, Suns::default(), model).unwrap();
+    let volumes = RasterSpheres::new(renderer, kinds, area, cut, Suns::default(), model).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
-    renderer.record_depth(&view, &mut passes);
-    renderer.record_gbuffer(&view, &mut passes);
-    volumes.record(&renderer, &view, &lights, &mut passes).unwrap();
+    renderer.record_depth(view, &mut passes);
+    renderer.record_gbuffer(view, &mut passes);
+    volumes.record(renderer, view, lights, &mut passes).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    let image = HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap();
+    let image = HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap();
     let difference = image.difference(&none).unwrap();
     assert!(difference.max_rel < RASTER_SPHERE_TOLERANCE, "{difference:?}");
 }

@@ -31,7 +31,7 @@ pub(crate) fn view() -> View {
     View::look_at(Vec3::new(0.5, 2.2, 4.0), Vec3::new(0.0, 0.4, -0.5), 1.0, 0.1, SIZE)
 }
 
-fn truth(
+pub(crate) fn truth(
     scene: &Scene,
     lights: &[Light],
     gbuffer: &GBufferSamples,
@@ -44,7 +44,7 @@ fn truth(
 }
 
 /// An image times the ratio of two others.
-fn shared(image: &HdrImage, part: &HdrImage, whole: &HdrImage) -> HdrImage {
+pub(crate) fn shared(image: &HdrImage, part: &HdrImage, whole: &HdrImage) -> HdrImage {
     let ratio = |ix: usize, channel: usize| {
         let (part, whole) = (part.pixels[ix][channel], whole.pixels[ix][channel]);
         if whole > 0.0 { part / whole } else { 1.0 }

@@ -32,11 +32,11 @@ pub(crate) fn walls_of(low: Vec3, high: Vec3, turned: bool) -> Vec<[Vec3; 3]> {
     (0..3).flat_map(|axis| [wall(axis, 1.0), wall(axis, -1.0)]).collect()
 }
 
-fn room() -> Vec<[Vec3; 3]> {
+pub(crate) fn room() -> Vec<[Vec3; 3]> {
     walls_of(Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 3.0, 3.0), true)
 }
 
-fn scene(quads: &[[Vec3; 3]]) -> Scene {
+pub(crate) fn scene(quads: &[[Vec3; 3]]) -> Scene {
     scene_of(quads, Material { double_sided: true, ..grey(0.5) }, vec![])
 }
 

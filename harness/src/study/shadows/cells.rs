@@ -22,15 +22,34 @@ pub(crate) struct Maps {
     pub(crate) taps: u32,
 }
 
-/// The shadow maps of a record; `None` without shadows, and where frames subdivided the lights.
+/// The shadow maps of a record; `None` without maps, and where frames subdivided the lights.
 pub(crate) fn maps(record: &Record) -> Option<Maps> {
     let setting = record.setting.shadows.as_ref()?;
     match setting.model.parse().ok()? {
         ShadowModel::Maps { px, taps, .. } => {
             Some(Maps { maps: setting.maps_per_area_light, px, taps })
         }
-        ShadowModel::None | ShadowModel::Adaptive { .. } => None,
+        ShadowModel::None | ShadowModel::Adaptive { .. } | ShadowModel::Cdi { .. } => None,
     }
+}
+
+/// The rays of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Rays {
+    /// Rays to each area light.
+    pub(crate) rays: u32,
+    /// Deep images that they cross, one for each direction.
+    pub(crate) images: u32,
+    /// The side of an image, pixels.
+    pub(crate) px: u32,
+}
+
+/// The rays of a record; `None` without rays.
+pub(crate) fn rays(record: &Record) -> Option<Rays> {
+    let setting = record.setting.shadows.as_ref()?;
+    let ShadowModel::Cdi { rays } = setting.model.parse().ok()? else { return None };
+    let deep = setting.deep.as_ref()?;
+    Some(Rays { rays, images: deep.directions(), px: deep.size_px })
 }
 
 /// The shadow maps of a record whose frames subdivided the lights.

@@ -12,9 +12,14 @@ use crate::{
     study::{against_truth::TRUTH, job::Job, scene::StudyScene},
 };
 
-use super::lod::{self, LOD, LOD_TRUTH};
-use super::roughness::{self, SEPARATED_BY, TRUTH_BY};
-
+/// P at each roughness of all surfaces.
+pub(crate) const SEPARATED_BY: &str = "separated-roughness";
+/// T at each roughness.
+pub(crate) const TRUTH_BY: &str = "truth-roughness";
+/// Far area lights as points, without shadows.
+pub(crate) const LOD: &str = "lod";
+/// The truth of the lights of [`LOD`], without shadows.
+pub(crate) const LOD_TRUTH: &str = "truth-lod";
 /// The section of P, the exact visible share times the exact light without shadows.
 pub(crate) const SEPARATED: &str = "separated";
 /// Without shadows.
@@ -33,6 +38,8 @@ pub(crate) const SIDES: &str = "sides";
 pub(crate) const TAPS: &str = "taps";
 /// The number of lights that share one atlas.
 pub(crate) const LIGHTS: &str = "lights";
+/// Rays in place of maps, and maps from as many points.
+pub(crate) const RAYS: &str = "rays";
 
 /// Lights that frames subdivide, by the resolution of the test, and fixed numbers of maps beside them.
 pub(crate) const ADAPTIVE: &str = "adaptive";
@@ -40,7 +47,7 @@ pub(crate) const ADAPTIVE: &str = "adaptive";
 pub(crate) const APPROACH: &str = "approach";
 
 /// The sections whose images are compared, each with the section of its truth.
-pub(crate) const AGAINST: [(&str, &str); 10] = [
+pub(crate) const AGAINST: [(&str, &str); 11] = [
     (SEPARATED, TRUTH),
     (NONE, TRUTH),
     (MAPS, TRUTH),
@@ -48,6 +55,7 @@ pub(crate) const AGAINST: [(&str, &str); 10] = [
     (TAPS, TRUTH),
     (LIGHTS, LIGHTS_TRUTH),
     (ADAPTIVE, TRUTH),
+    (RAYS, TRUTH),
     (PIPELINE, UNSHADOWED),
     (SEPARATED_BY, TRUTH_BY),
     (LOD, LOD_TRUTH),
@@ -78,10 +86,10 @@ const FIXED: [u32; 2] = [25, 81];
 const MOST_MAPS: u32 = 64;
 
 /// The range of a light as a share of the diagonal of the scene's core: that of the study of area lights.
-const RANGE_SHARE: f32 = 0.5;
+pub(super) const RANGE_SHARE: f32 = 0.5;
 
 /// Lights of all sections but one.
-const FEW: u32 = 4;
+pub(super) const FEW: u32 = 4;
 
 /// How much the study looks at.
 pub(crate) struct Extent {
@@ -101,7 +109,7 @@ pub(crate) struct Extent {
     filtered_px: u32,
     lights: &'static [u32],
     /// The size of images of `lights`, and the samples per pixel of their truth: T of many lights takes long.
-    lights_size: Size,
+    pub(crate) lights_size: Size,
     pub(crate) lights_samples: &'static str,
     /// Maps of each of these lights.
     shared_maps: u32,
@@ -109,10 +117,6 @@ pub(crate) struct Extent {
     adaptive_px: u32,
     /// The test for bands looks at one pixel in so many along each axis.
     downs: &'static [u32],
-    /// Roughnesses of all surfaces, for P against T.
-    pub(crate) roughnesses: &'static [f64],
-    /// Solid angles below which area lights become points, steradians.
-    pub(crate) solid_angles: &'static [&'static str],
 }
 
 pub(crate) const FULL: Extent = Extent {
@@ -131,8 +135,6 @@ pub(crate) const FULL: Extent = Extent {
     shared_maps: 25,
     adaptive_px: 256,
     downs: &[1, 2, 4, 8, 16],
-    roughnesses: &[0.1, 0.2, 0.4, 0.7, 1.0],
-    solid_angles: &["0.003", "0.01", "0.03", "0.1", "0.3", "1"],
 };
 
 pub(crate) const QUICK: Extent = Extent {
@@ -151,22 +153,7 @@ pub(crate) const QUICK: Extent = Extent {
     shared_maps: 9,
     adaptive_px: 64,
     downs: &[1, 8],
-    roughnesses: &[0.2, 1.0],
-    solid_angles: &["0.01", "0.3"],
 };
-
-/// How many lights jobs have, and the options of their scene, size and ranges.
-pub(crate) struct Lights {
-    pub(crate) count: String,
-    options: Vec<String>,
-}
-
-impl Lights {
-    /// The options of their scene, size and ranges.
-    pub(crate) fn options(&self) -> Vec<&str> {
-        self.options.iter().map(String::as_str).collect()
-    }
-}
 
 /// The squares of an atlas that one map of a one-sided rectangle takes: one face and four halves.
 const SQUARES_PER_MAP: u32 = 3;
@@ -236,7 +223,7 @@ fn stops(
 }
 
 /// The options of the lights: rectangles with equal ranges.
-fn alike(range_m: f32) -> Vec<String> {
+pub(super) fn alike(range_m: f32) -> Vec<String> {
     // All digits: in a scene of millimetres, a rounded range would differ.
     let range = range_m.clamp(1e-6, 1e6).to_string();
     let alike = ["--radii", "equal", "--radius-scale", &range];
@@ -251,9 +238,6 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
         [drawn, alike(range_m)].concat()
     };
     let (many, lit) = (lit(extent.lights_size), lit(extent.size));
-    let small = |count: u32| Lights { count: count.to_string(), options: many.clone() };
-    let most = extent.lights.last().copied().unwrap_or(FEW);
-    let (small, crowd) = (small(FEW), small(most));
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let many: Vec<&str> = many.iter().map(String::as_str).collect();
     let few = FEW.to_string();
@@ -323,8 +307,6 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
             jobs.push(job.with(DISTANCE, &stop.distance_m.to_string()));
         }
     }
-    jobs.extend(roughness::jobs(scene, extent, &small));
-    jobs.extend(lod::jobs(scene, extent, &crowd));
     jobs
 }
 

@@ -3,9 +3,12 @@
 //! The lights cast no shadows, so that errors come from the points alone, beside those of the pipeline.
 
 use super::cells::{METRIC, error, on_software};
-use super::jobs::{Extent, Lights};
+use super::jobs::{LOD, LOD_TRUTH, RANGE_SHARE, alike, extent_of};
 use crate::{
+    bench::Bench,
     chart::{Axis, Marks, Point, Scale, Series, XyChart},
+    cli::StudyArgs,
+    error::HarnessError,
     image_errors::ERROR_METRICS,
     report::{
         column::Column,
@@ -25,23 +28,34 @@ use crate::{
     },
 };
 
-/// The section of its images.
-pub(crate) const LOD: &str = "lod";
-/// The section of their truth, without shadows.
-pub(crate) const LOD_TRUTH: &str = "truth-lod";
+/// Lights, and the solid angles below which they become points, steradians: in full and quick.
+const LIT: [(&str, &[&str]); 2] =
+    [("64", &["0.003", "0.01", "0.03", "0.1", "0.3", "1"]), ("16", &["0.01", "0.3"])];
 
 /// The jobs of a scene: the truth, all lights with their outlines, and each solid angle.
-pub(crate) fn jobs(scene: &StudyScene, extent: &Extent, lights: &Lights) -> Vec<Job> {
-    let drawn = [&lights.options()[..], &["--lights", &lights.count]].concat();
-    let truth = [&["truth"], &drawn[..], &["--samples", extent.lights_samples]].concat();
-    let compared = ["--strategies", BASELINE, "--truth", "none"];
-    let timed = ["--frames", extent.frames, "--warmup", extent.warmup];
+pub(crate) fn jobs(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+) -> Result<Vec<Job>, HarnessError> {
+    let ([core, _], _) = scene.boxes(bench)?;
+    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
+}
+
+fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
+    let study = extent_of(args);
+    let (lights, angles) = LIT[usize::from(args.quick)];
+    let drawn = scene.options(args.size.unwrap_or(study.lights_size), args.seed);
+    let drawn = [drawn, alike(range_m)].concat();
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).chain(["--lights", lights]).collect();
+    let truth = [&["truth"], &drawn[..], &["--samples", study.lights_samples]].concat();
+    let timed = ["--frames", study.frames, "--warmup", study.warmup, "--truth", "none"];
     let compare = |variant: &str, more: &[&str]| {
-        let words = [&["compare"], &drawn[..], &compared, &timed, more].concat();
+        let words = [&["compare", "--strategies", BASELINE], &drawn[..], &timed, more].concat();
         Job::new(scene, LOD, variant, &words)
     };
     let mut jobs = vec![Job::new(scene, LOD_TRUTH, "", &truth), compare("off", &[])];
-    jobs.extend(extent.solid_angles.iter().map(|angle| compare(angle, &["--area-lod", angle])));
+    jobs.extend(angles.iter().map(|angle| compare(angle, &["--area-lod", angle])));
     jobs
 }
 
@@ -150,4 +164,34 @@ pub(crate) fn finding(done: &Done, scene: &str) -> Option<String> {
         significant(angle),
         difference(error(record, METRIC)?)
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Invocation, parse};
+    use crate::study::shadows::jobs::ALIKE;
+
+    #[test]
+    fn every_job_is_a_command_and_every_image_has_a_truth() {
+        for (line, count) in [("", 8), ("--quick", 4)] {
+            let words =
+                ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
+            let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
+            let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
+            let scenes = StudyScene::all(&args).expect("scenes");
+            let jobs = plan(&args, &scenes[0], 10.0);
+            assert_eq!(jobs.len(), count);
+            let (images, truths) = (LOD, LOD_TRUTH);
+            for job in &jobs {
+                assert!(parse(&job.command).is_ok(), "{:?}", job.command);
+                let alike = |other: &&Job| {
+                    other.section == truths
+                        && ALIKE.iter().all(|option| other.option(option) == job.option(option))
+                };
+                let count = jobs.iter().filter(alike).count();
+                assert!(job.section != images || count == 1, "{}", job.name);
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@ mod jobs;
 mod lod;
 mod occlusion;
 mod page;
+mod rays;
 mod roughness;
 
 use super::against_truth::{TruthOf, compare_with_truths};
@@ -42,13 +43,16 @@ pub(crate) const STUDY: Study = Study {
     notices: |_| Vec::new(),
 };
 
-/// The jobs on errors, and the one on lists that know occlusion.
+/// The jobs of all sections.
 fn all_jobs(
     bench: &mut Bench,
     args: &StudyArgs,
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let mut all = jobs::jobs(bench, args, scene)?;
+    all.extend(rays::jobs(bench, args, scene)?);
+    all.extend(roughness::jobs(bench, args, scene)?);
+    all.extend(lod::jobs(bench, args, scene)?);
     all.push(occlusion::job(args, scene, jobs::extent_of(args)));
     Ok(all)
 }

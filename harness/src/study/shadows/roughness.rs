@@ -5,9 +5,12 @@
 //! one roughness on all surfaces.
 
 use super::cells::METRIC;
-use super::jobs::{Extent, Lights};
+use super::jobs::{FEW, RANGE_SHARE, SEPARATED_BY, TRUTH_BY, alike, extent_of};
 use crate::{
+    bench::Bench,
     chart::{Axis, Marks, Point, Scale, Series, XyChart},
+    cli::StudyArgs,
+    error::HarnessError,
     image_errors::ERROR_METRICS,
     report::{
         format::{difference, significant},
@@ -23,26 +26,37 @@ use crate::{
     },
 };
 
-/// The section of P at each roughness.
-pub(crate) const SEPARATED_BY: &str = "separated-roughness";
-/// The section of T at each roughness.
-pub(crate) const TRUTH_BY: &str = "truth-roughness";
-
 /// The setting of both: the roughness of all surfaces.
 const ROUGHNESS: &str = "roughness";
 
-/// The jobs of a scene.
-pub(crate) fn jobs(scene: &StudyScene, extent: &Extent, lights: &Lights) -> Vec<Job> {
-    let truth = |section: &str, roughness: f64, more: &[&str]| {
-        let value = roughness.to_string();
-        let words = ["--samples", extent.samples, "--lights", &lights.count, "--roughness", &value];
-        let words = [&["truth", "--shadows"], &lights.options()[..], &words, more].concat();
-        Job::new(scene, section, &value, &words).with(ROUGHNESS, &value)
+/// Roughnesses, in full and quick.
+const ROUGHNESSES: [&[&str]; 2] = [&["0.1", "0.2", "0.4", "0.7", "1"], &["0.2", "1"]];
+
+/// The jobs of a scene: T and P of each roughness.
+pub(crate) fn jobs(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+) -> Result<Vec<Job>, HarnessError> {
+    let ([core, _], _) = scene.boxes(bench)?;
+    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
+}
+
+fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
+    let study = extent_of(args);
+    let drawn = scene.options(args.size.unwrap_or(study.lights_size), args.seed);
+    let lit = [drawn, alike(range_m)].concat();
+    let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
+    let few = FEW.to_string();
+    let truth = |section: &str, roughness: &str, more: &[&str]| {
+        let words = ["--samples", study.samples, "--lights", &few, "--roughness", roughness];
+        let words = [&["truth", "--shadows"], &lit[..], &words, more].concat();
+        Job::new(scene, section, roughness, &words).with(ROUGHNESS, roughness)
     };
-    let pair = |roughness: &f64| {
-        [truth(TRUTH_BY, *roughness, &[]), truth(SEPARATED_BY, *roughness, &["--separated"])]
+    let pair = |roughness: &&str| {
+        [truth(TRUTH_BY, roughness, &[]), truth(SEPARATED_BY, roughness, &["--separated"])]
     };
-    extent.roughnesses.iter().flat_map(pair).collect()
+    ROUGHNESSES[usize::from(args.quick)].iter().flat_map(pair).collect()
 }
 
 const NOTE: &str = "P has the exact visible share of each light, times its exact light without shadows. T is the truth. All \
@@ -127,4 +141,34 @@ pub(crate) fn finding(done: &Done, scene: &str) -> Option<String> {
         difference(error(last.1, METRIC)?),
         significant(last.0)
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Invocation, parse};
+    use crate::study::shadows::jobs::ALIKE;
+
+    #[test]
+    fn every_job_is_a_command_and_every_image_has_a_truth() {
+        for (line, count) in [("", 10), ("--quick", 4)] {
+            let words =
+                ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
+            let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
+            let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
+            let scenes = StudyScene::all(&args).expect("scenes");
+            let jobs = plan(&args, &scenes[0], 10.0);
+            assert_eq!(jobs.len(), count);
+            let (images, truths) = (SEPARATED_BY, TRUTH_BY);
+            for job in &jobs {
+                assert!(parse(&job.command).is_ok(), "{:?}", job.command);
+                let alike = |other: &&Job| {
+                    other.section == truths
+                        && ALIKE.iter().all(|option| other.option(option) == job.option(option))
+                };
+                let count = jobs.iter().filter(alike).count();
+                assert!(job.section != images || count == 1, "{}", job.name);
+            }
+        }
+    }
 }

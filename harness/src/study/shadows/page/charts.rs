@@ -8,7 +8,7 @@ use crate::report::markup::{Html, html};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
-use crate::study::shadows::cells::{Adaptive, adaptive, error, floor_of, maps};
+use crate::study::shadows::cells::{Adaptive, Rays, adaptive, error, floor_of, maps, rays};
 
 /// The metrics of the panels, the first in front.
 const METRICS: [&str; 2] = ["flip", "rel_mse"];
@@ -88,6 +88,11 @@ pub(crate) fn name(entry: &Entry<'_>) -> String {
         let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
         let px = number(f64::from(px));
         return format!("{lights}, {count} maps of {px}\u{b2}, adaptive at 1/{down}");
+    }
+    if let Some(Rays { rays, images, px }) = rays(record) {
+        let count = if rays == 1 { "1 ray".to_owned() } else { format!("{rays} rays") };
+        let px = number(f64::from(px));
+        return format!("{lights}, {count} through {images} images of {px}\u{b2}");
     }
     let Some(maps) = maps(record) else { return format!("{lights}, no shadows") };
     let count = if maps.maps == 1 { "1 map".to_owned() } else { format!("{} maps", maps.maps) };

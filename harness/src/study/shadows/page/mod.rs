@@ -3,11 +3,12 @@
 mod approach;
 mod charts;
 mod pictures;
+mod rays;
 mod table;
 
 use self::charts::{Sweep, swept};
 use super::cells::{METRIC, adaptive, atlas, atlases, floor_of, least, maps, pipeline_of, steps};
-use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, SIDES, TAPS};
+use super::jobs::{ADAPTIVE, APPROACH, COMPARED, LIGHTS, MAPS, NONE, RAYS, SIDES, TAPS};
 use super::{lod, occlusion, roughness};
 use crate::report::format::{difference, number, short_adapter};
 use crate::report::rank::listed;
@@ -80,7 +81,7 @@ fn of_maps(entry: &Entry<'_>) -> String {
 }
 
 const TABLE_NOTE: &str = "Errors are those against T, the truth with shadows. The row P is the floor: it has no maps. The last two columns \
-     are times from the records. \u{201c}Draw maps\u{201d} draws all maps once, before the frames. \
+     are times from the records. \u{201c}Draw maps\u{201d} draws all maps once, or builds the deep images that rays cross, before the frames. \
      \u{201c}Shade\u{201d} is a frame\u{2019}s lighting pass without culling. Times of a software adapter say nothing \
      of a GPU.";
 
@@ -100,7 +101,9 @@ pub(crate) fn parts(
             Part::new(sweep.section, sweep.title, sweep.note, swept(done, scene, sweep, charts))
         })
         .collect();
-    let all = COMPARED.map(|section| entries(done, scene, section)).concat();
+    parts.push(rays::part(done, scene, charts));
+    let mut all = COMPARED.map(|section| entries(done, scene, section)).concat();
+    all.extend(entries(done, scene, RAYS));
     let body = table::table(done, scene, &all);
     parts.push(Part::new("table", "All figures", TABLE_NOTE, body));
     let body = approach::table(done, scene);
@@ -177,6 +180,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     }
     found.extend(roughness::finding(done, scene));
     found.extend(lod::finding(done, scene));
+    found.extend(rays::finding(done, scene));
     found.extend(occlusion::finding(done, scene));
     found
 }

@@ -44,12 +44,16 @@ pub(crate) fn table<'a>(done: &'a Done, scene: &'a str, all: &[Entry<'a>]) -> Ht
     }
     let maps = |line: &Line<'_>| Some(f64::from(line.shadows()?.maps));
     let bytes = |line: &Line<'_>| {
-        let [width, height] = line.shadows()?.atlas_px.map(f64::from);
+        let shadows = line.shadows()?;
+        if let Some(deep) = &shadows.deep {
+            return Some(deep.bytes as f64 / MIB);
+        }
+        let [width, height] = shadows.atlas_px.map(f64::from);
         Some(4.0 * width * height / MIB)
     };
     let mut columns = vec![
-        Column::figure("all maps", "", Better::Neither, maps, number),
-        Column::figure("atlas", "MiB", Better::Less, bytes, significant),
+        Column::figure("all maps or points", "", Better::Neither, maps, number),
+        Column::figure("atlas or images", "MiB", Better::Less, bytes, significant),
     ];
     columns.extend(error_columns(errors_of));
     columns.push(Column::ms("draw maps", |line: &Line<'_>| line.shadows()?.draw_ms).id("draw_ms"));

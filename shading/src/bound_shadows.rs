@@ -1,0 +1,109 @@
+//! What lighting reads of the lights' shadows: maps, or the points of lights and the deep images that rays cross.
+
+use assign::{Shader, entry, storage_entry};
+use assign_cdi::{DeepImageSettings, DeepImages, RayBuffers};
+
+use crate::{
+    ShadowModel,
+    bound_maps::{BoundMaps, RECORDS_BINDING},
+};
+
+/// The bind group of shadows.
+const GROUP: u32 = 2;
+
+/// The first binding of `ray_cast.wesl` in it.
+const RAYS_BINDING: u32 = 30;
+
+/// Which kind of shadows a layout binds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum ShadowKind {
+    #[default]
+    None,
+    Maps,
+    Rays,
+}
+
+impl ShadowKind {
+    pub(crate) const ALL: [Self; 3] = [Self::None, Self::Maps, Self::Rays];
+
+    /// The kind of a model.
+    pub(crate) fn of(model: ShadowModel) -> Self {
+        match model {
+            ShadowModel::None => Self::None,
+            ShadowModel::Maps { .. } | ShadowModel::Adaptive { .. } => Self::Maps,
+            ShadowModel::Cdi { .. } => Self::Rays,
+        }
+    }
+
+    /// Layout entries of group 2, for the stages that light.
+    pub(crate) fn layout(self, stages: wgpu::ShaderStages) -> Vec<wgpu::BindGroupLayoutEntry> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Maps => BoundMaps::layout(stages).into(),
+            Self::Rays => {
+                let records = [storage_entry(RECORDS_BINDING, stages, true)];
+                records.into_iter().chain(RayBuffers::layout(RAYS_BINDING, stages)).collect()
+            }
+        }
+    }
+}
+
+/// The points of lights, and what rays to them cross. Clones share the buffers.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundRays {
+    pub(crate) model: ShadowModel,
+    pub(crate) records: wgpu::Buffer,
+    pub(crate) images: RayBuffers,
+}
+
+/// Shadows as shaders read them.
+#[derive(Clone, Debug)]
+pub(crate) enum BoundShadows {
+    Maps(BoundMaps),
+    Rays(BoundRays),
+}
+
+impl BoundShadows {
+    /// Their model.
+    pub(crate) fn model(&self) -> ShadowModel {
+        match self {
+            Self::Maps(maps) => maps.model(),
+            Self::Rays(rays) => rays.model,
+        }
+    }
+
+    /// How far from their lights samples may lie that they serve, in ranges of the lights. Deep images hold the whole scene.
+    pub(crate) fn ranges(&self) -> f32 {
+        match self {
+            Self::Maps(maps) => maps.ranges(),
+            Self::Rays(_) => f32::INFINITY,
+        }
+    }
+
+    /// The settings of the deep images that rays cross.
+    pub(crate) fn images(&self) -> Option<DeepImageSettings> {
+        match self {
+            Self::Maps(_) => None,
+            Self::Rays(rays) => Some(*rays.images.settings()),
+        }
+    }
+
+    /// Bind group entries of group 2.
+    pub(crate) fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
+        match self {
+            Self::Maps(maps) => maps.entries().into(),
+            Self::Rays(rays) => {
+                let records = [entry(RECORDS_BINDING, &rays.records)];
+                records.into_iter().chain(rays.images.entries(RAYS_BINDING)).collect()
+            }
+        }
+    }
+}
+
+/// Mounts what shaders with the flag `shadow_rays` import.
+pub(crate) fn mount_rays<'a>(shader: Shader<'a>, images: Option<DeepImageSettings>) -> Shader<'a> {
+    match images {
+        None => shader,
+        Some(images) => DeepImages::mount_at(&images, shader, (GROUP, RAYS_BINDING)),
+    }
+}
