@@ -26,7 +26,7 @@ pub struct Lighting {
 
 #[derive(Debug)]
 enum Kind {
-    Deferred(Deferred),
+    Deferred(Box<Deferred>),
     Forward(Forward),
 }
 
@@ -97,7 +97,7 @@ impl Lighting {
         let lists = Lists { lookup: strategy.lookup(), options, images: inputs.images() };
         let kind = match mode {
             Mode::Deferred | Mode::DeferredIds => {
-                Kind::Deferred(Deferred::new(renderer, lists, needs.models, inputs)?)
+                Kind::Deferred(Box::new(Deferred::new(renderer, lists, needs.models, inputs)?))
             }
             Mode::Forward | Mode::ForwardNoPrepass => {
                 let has_depth = mode.has_prepass(needs);

@@ -88,9 +88,7 @@ impl VplArgs {
 /// The deep images: of ranges, and of rays that find shadows.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct DeepArgs {
-    /// Directions of the deep images over the hemisphere: stacks x slices, each 1 to 64
-    ///
-    /// [default: 13x13, or 8x8 for shadows]
+    /// Directions, stacks x slices, each 1 to 64 [default: 13x13, or 8x8 for shadows]
     #[arg(long, value_name = "SxS", allow_hyphen_values = true, help_heading = DEEP, hide_short_help = true)]
     pub directions: Option<DirectionCounts>,
 

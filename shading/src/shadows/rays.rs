@@ -38,7 +38,7 @@
 //! shadows. What rises less than `p / sqrt(2)` from the sample's plane casts none: light leaks at feet, and farther where it
 //! is low. Beside a wall, half a pixel wide, the line may lie behind the wall and cross it, which darkens. A wall along a stored
 //! direction lies between the lines of its pixels, and rays of this direction's cell pass it: take directions in which
-//! no walls stand. Alpha masks are solid. The share multiplies both lobes, as with maps.
+//! no walls stand. Some rays pass walls that are more than 63 degrees from the image's plane. Alpha masks are solid. The share multiplies both lobes, as with maps.
 
 use assign::{Gpu, Light, LightBuffer, LightShape, Outline, Passes};
 use assign_cdi::{Build, Coverage, DeepImageSettings, DeepImages, Directions, Triangles};

@@ -1,7 +1,7 @@
 //! Rays through deep images in place of maps: against the truth, and where they must show nothing.
 
 use assign::{Light, LightBuffer, LightOrder, View};
-use assign_cdi::{Build, DeepImageSettings, Directions, Spread, Storage};
+use assign_cdi::{Build, DeepImageSettings, DeepImages, Directions, Spread, Storage};
 use glam::Vec3;
 use shading::{
     HdrImage, OccluderDepth, Renderer, ShadingError, ShadowModel, WorldTriangles, shadow_images,
@@ -141,7 +141,7 @@ fn rays_are_refused_without_finished_images_of_the_scene() {
     cast_rays_through(&mut renderer, &scene, 4, 64);
     let figures = renderer.cast_shadows(&lights, rays(16)).unwrap().unwrap();
     assert_eq!((figures.maps_per_area_light, figures.maps, figures.atlas_px), (16, 16, [0, 0]));
-    assert_eq!(Some(figures.image_bytes), renderer.shadow_images().map(|images| images.bytes()));
+    assert_eq!(Some(figures.image_bytes), renderer.shadow_images().map(DeepImages::bytes));
     renderer.prepare(&view, &lights).unwrap();
     let moved = LightBuffer::new(&gpu, &[lamp(Vec3::new(0.1, 3.0, 0.0))]).unwrap();
     let error = renderer.prepare(&view, &moved).unwrap_err();
