@@ -50,7 +50,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     }
     check_reach(args.specular_reach, args.cut)?;
     check_area_lod(args)?;
-    check_shadows(args.shadows, &args.stage, &args.layers, (args.path, args.msaa))?;
+    check_shadows(args.shadows, &args.stage, (args.path, args.msaa))?;
     check_occlusion(args.shadows, choices)?;
     if let Some(path) = args.against.as_ref().filter(|_| args.pictures != PicturesChoice::All) {
         let accepted =
@@ -319,8 +319,6 @@ mod tests {
     #[test]
     fn shadows_are_refused_where_there_are_no_maps() {
         for option in [
-            "--fog 0.1",
-            "--particles 9",
             "--motion drift",
             "--vpls 64",
             "--light-order gpu",

@@ -139,7 +139,7 @@ fn path_frames(gpu: &Gpu, args: &ExplainArgs) -> u32 {
 fn check(args: &ExplainArgs) -> Result<(), CliError> {
     check_motion(&args.stage)?;
     check_reach(args.specular_reach, args.cut)?;
-    check_shadows(args.shadows, &args.stage, &args.layers, (args.path, 1))?;
+    check_shadows(args.shadows, &args.stage, (args.path, 1))?;
     let (pixel, size) = (args.pixel, args.stage.size);
     if pixel.x >= size.width || pixel.y >= size.height {
         let accepted = format!(

@@ -4,7 +4,7 @@ use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
     choice::Choice,
-    cli::{CliError, LayerArgs, StageArgs},
+    cli::{CliError, StageArgs},
     clock::PassClock,
     error::HarnessError,
     messages::say,
@@ -174,16 +174,12 @@ pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<
 pub(crate) fn check_shadows(
     model: ShadowModel,
     stage: &StageArgs,
-    layers: &LayerArgs,
     (is_path, samples): (bool, u32),
 ) -> Result<(), CliError> {
     if !model.is_on() {
         return Ok(());
     }
     let refuse = |accepted| Err(CliError::out_of_range("--shadows", &model.to_string(), accepted));
-    if *layers != LayerArgs::default() {
-        return refuse("none with --transparent, --particles and --fog, which maps do not shade");
-    }
     if model.is_adaptive() && is_path {
         return refuse("none or maps:N,PX with --path, because adaptive maps settle in one view");
     }

@@ -81,16 +81,6 @@ impl Lighting {
         if !mode.is_forward() {
             renderer.check_one_sample("deferred shading")?;
         }
-        if options.shadows.is_on() && renderer.layers.is_some() {
-            return Err(AssignError::Parameter {
-                field: "shadow model".into(),
-                value: options.shadows.to_string(),
-                accepted:
-                    "none with transparent surfaces, particles and fog, which maps do not shade"
-                        .into(),
-            }
-            .into());
-        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;

@@ -2,7 +2,7 @@
 
 use assign::{AssignError, EncoderPasses, LightBuffer, Passes};
 
-use super::{OccluderDepth, ShadowFigures, ShadowMaps};
+use super::{Asked, OccluderDepth, ShadowFigures, ShadowMaps};
 use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
 
 impl Renderer {
@@ -54,13 +54,12 @@ impl Renderer {
         if !model.is_on() {
             return Ok(None);
         }
-        let maps = ShadowMaps::new(
-            &self.gpu,
-            &self.scene,
-            &self.frame,
-            lights,
-            (model, self.shadow_ranges),
-        )?;
+        let asked = Asked {
+            model,
+            ranges: self.shadow_ranges,
+            only_opaque: self.layer_kinds().sheets,
+        };
+        let maps = ShadowMaps::new(&self.gpu, &self.scene, &self.frame, lights, asked)?;
         let figures = maps.figures();
         self.shadows = Some(maps);
         self.record_shadow_maps(passes);

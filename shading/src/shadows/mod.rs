@@ -67,9 +67,11 @@
 //! highlight whose part of the emitter is hidden stays visible: the separation error. It is zero on matte surfaces.
 
 mod adaptive;
+mod atlas;
 mod banding;
 mod cast;
 mod clear_face;
+mod draw;
 mod face;
 mod figures;
 mod occluders;
@@ -82,7 +84,7 @@ mod sight;
 mod start_level;
 mod views;
 
-use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Occluders, Passes, View};
+use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Passes, View};
 use bytemuck::cast_slice;
 
 use crate::{
@@ -90,26 +92,31 @@ use crate::{
     bound_maps::BoundMaps,
     geometry::SceneGpu,
     raster::{Orientation, RasterPass, RasterPipelines},
-    targets::DEPTH_FORMAT,
 };
 
 use adaptive::Adaptive;
 pub use adaptive::ShadowRefinement;
+use atlas::{atlas, check_device};
 use banding::Drawn;
 use face::Face;
 pub use figures::ShadowFigures;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::Plan;
-use sight::Sight;
 use views::Views;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
 const MOST_ATLAS_PX: u32 = 1 << 15;
 
-/// Storage buffers that a shader with lists and shadows may bind: lights and lists 6, materials, the table of area
-/// lights, and the records of maps.
-const STORAGE_BUFFERS: u32 = 9;
+/// What maps are made for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub(crate) model: ShadowModel,
+    /// How far samples may lie that lights reach, in ranges of the lights.
+    pub(crate) ranges: f32,
+    /// Whether transparent surfaces cast no shadows.
+    pub(crate) only_opaque: bool,
+}
 
 /// The shadow maps of a scene's lights.
 #[derive(Debug)]
@@ -128,14 +135,13 @@ pub(crate) struct ShadowMaps {
     adaptive: Option<Adaptive>,
     /// Maps of lights that have no tree.
     fixed_maps: u32,
-    /// How far samples may lie that lights reach, in ranges of the lights.
-    ranges: f32,
+    asked: Asked,
     /// What hides lights from groups, if asked for.
     pyramid: Option<Pyramid>,
 }
 
 impl ShadowMaps {
-    /// Plans the maps of `lights` and allocates them. Samples may lie up to `ranges` of the lights' ranges from them.
+    /// Plans the maps of `lights` and allocates them.
     ///
     /// # Errors
     ///
@@ -146,9 +152,10 @@ impl ShadowMaps {
         scene: &SceneGpu,
         frame: &FrameBindings,
         lights: &LightBuffer,
-        (model, ranges): (ShadowModel, f32),
+        asked: Asked,
     ) -> Result<Self, ShadingError> {
         check_device(gpu)?;
+        let Asked { model, ranges, .. } = asked;
         if lights.order().is_on_gpu() || lights.live_count().is_some() {
             return Err(AssignError::Unsupported {
                 strategy: format!("shadow model {model}"),
@@ -193,7 +200,7 @@ impl ShadowMaps {
             views,
             bound: BoundMaps::new(model, ranges, atlas, records),
             adaptive,
-            ranges,
+            asked,
             pyramid: None,
         };
         maps.count_maps();
@@ -276,101 +283,4 @@ impl ShadowMaps {
             None => Ok(false),
         }
     }
-
-    /// Records the pass `shadow-maps`: the depth of all triangles that a face may show.
-    pub(crate) fn record(
-        &self,
-        scene: &SceneGpu,
-        scene_group: &wgpu::BindGroup,
-        passes: &mut dyn Passes,
-    ) {
-        // Nothing is infinitely far.
-        self.draw(scene, scene_group, &self.drawn, wgpu::LoadOp::Clear(0.0), passes);
-    }
-
-    /// Draws some faces. Unless the whole atlas is cleared, each of them is.
-    fn draw(
-        &self,
-        scene: &SceneGpu,
-        scene_group: &wgpu::BindGroup,
-        faces: &[u32],
-        load: wgpu::LoadOp<f32>,
-        passes: &mut dyn Passes,
-    ) {
-        let clear = self.adaptive.as_ref().map(|adaptive| &adaptive.clear_face);
-        let clear = clear.filter(|_| load == wgpu::LoadOp::Load);
-        let descriptor = wgpu::RenderPassDescriptor {
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: self.bound.atlas(),
-                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        };
-        passes.render("shadow-maps", &descriptor, &mut |pass| {
-            for ix in faces {
-                let face = &self.faces[*ix as usize];
-                let ([x, y], [width, height]) = (face.origin, face.size);
-                pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
-                pass.set_scissor_rect(x, y, width, height);
-                if let Some(clear) = clear {
-                    pass.set_pipeline(clear);
-                    pass.draw(0..3, 0..1);
-                }
-                pass.set_bind_group(0, &self.views.group, &[*ix * self.views.stride]);
-                pass.set_bind_group(2, scene_group, &[]);
-                let sight = Sight::new(face, self.ranges);
-                let may_see = |bounds| sight.may_see(bounds);
-                let pipeline = |key| self.pipelines.get(key);
-                scene.draw_pieces(pass, scene.has_mask(), may_see, pipeline);
-            }
-        });
-        if let Some(pyramid) = &self.pyramid {
-            pyramid.record(passes);
-        }
-    }
-
-    /// Makes the pyramid of depths. [`record`](Self::record) fills it from then on.
-    pub(crate) fn make_pyramid(
-        &mut self,
-        gpu: &Gpu,
-        kept: OccluderDepth,
-    ) -> Result<&Pyramid, ShadingError> {
-        let pyramid = Pyramid::new(gpu, self.bound.atlas(), self.figures.atlas_px, kept)?;
-        self.figures.occluder_bytes = pyramid.bytes();
-        Ok(self.pyramid.insert(pyramid))
-    }
-
-    /// What hides lights from groups; `None` without a pyramid.
-    pub(crate) fn occluders(&self) -> Option<Occluders<'_>> {
-        Some(self.pyramid.as_ref()?.occluders(self.bound.records()))
-    }
-}
-
-fn check_device(gpu: &Gpu) -> Result<(), AssignError> {
-    let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
-    if has >= STORAGE_BUFFERS {
-        return Ok(());
-    }
-    Err(AssignError::Limit {
-        strategy: "shading with shadow maps".into(),
-        limit: "max_storage_buffers_per_shader_stage",
-        needs: STORAGE_BUFFERS.into(),
-        has: has.into(),
-    })
-}
-
-fn atlas(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadow maps"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -2,7 +2,7 @@
 
 use assign::{Everything, Light, LightBuffer, LightOrder};
 use glam::Vec3;
-use shading::{LayerOptions, Lighting, LightingOptions, Mode, Renderer, ShadingError, ShadowModel};
+use shading::{Lighting, LightingOptions, Mode, Renderer, ShadingError, ShadowModel};
 
 use crate::{common, lamp, maps};
 
@@ -37,12 +37,6 @@ fn shadows_without_their_maps_are_refused() {
     );
     assert_eq!(renderer.cast_shadows(&lights, ShadowModel::None).unwrap(), None);
     assert!(refused(&renderer, options(maps(4, 64, 1))).contains("cast_shadows"));
-    let fog = LayerOptions { fog_per_m: Some(0.1), ..LayerOptions::default() };
-    if renderer.show_layers(&fog).is_ok() {
-        renderer.cast_shadows(&lights, maps(4, 64, 1)).unwrap();
-        let error = refused(&renderer, options(maps(4, 64, 1)));
-        assert!(error.contains("none with transparent surfaces, particles and fog"), "{error}");
-    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod adaptive;
 #[path = "../common/mod.rs"]
 mod common;
 mod errors;
+mod layers;
 mod occlusion;
 mod strategies;
 mod truth;
