@@ -334,6 +334,10 @@ mod tests {
             assert_eq!(check(&format!("--shadows none {option}")), Ok(()), "{option}");
         }
         assert_eq!(check("--shadows maps:4,64 --path --areas 0.5"), Ok(()));
+        for layers in ["--fog 0.1", "--particles 9", "--transparent"] {
+            assert_eq!(check(&format!("--shadows maps:4,64 {layers}")), Ok(()), "{layers}");
+        }
+        assert_eq!(check("--shadows maps:4,64 --motion drift --light-order given"), Ok(()));
         for option in ["--path", "--msaa 4 --mode forward --truth none", "--motion drift"] {
             let error = check(&format!("--shadows adaptive:64,4,25 {option}")).expect_err(option);
             let name = option.split(' ').next().expect("a name");

@@ -1,5 +1,8 @@
 //! The shadow maps of a stage.
 
+use std::time::Instant;
+
+use assign::LightBuffer;
 use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
 use crate::{
@@ -8,6 +11,7 @@ use crate::{
     clock::PassClock,
     error::HarnessError,
     messages::say,
+    moving::Moving,
     results::{AdaptiveSetting, ShadowSetting, median},
     stage::Stage,
 };
@@ -25,8 +29,8 @@ pub struct Casting {
 }
 
 impl Stage {
-    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. With an
-    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. If asked
+    /// Makes shadow maps for its lights and draws them before all frames. If lights move, each frame draws the maps again
+    /// ([`Painter`](crate::painter::Painter)), and the atlas has room for the lights of all frames. With an adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. If asked
     /// to, it also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got
     /// fewer maps than asked for.
     ///
@@ -48,15 +52,16 @@ impl Stage {
             let accepted = "none in a scene with suns, which have no shadow maps";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
-        (self.shadow_draw_ms, self.shadow_rounds) = (None, None);
+        (self.shadow_draw_ms, self.shadow_plan_ms, self.shadow_rounds) = (None, None, None);
         let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
         self.shadows = model;
         let [width, height] = figures.atlas_px;
         say(format!(
-            "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn once in {:.1} ms",
+            "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn {} in {:.1} ms",
             figures.maps,
             figures.faces,
             figures.atlas_bytes().div_ceil(1 << 20),
+            if self.moving.is_some() { "in every frame, now" } else { "once" },
             self.shadow_draw_ms.unwrap_or_default()
         ));
         if let Some(adaptive) = self.adaptive_setting() {
@@ -83,6 +88,27 @@ impl Stage {
         Ok(warning)
     }
 
+    /// Has the maps look from where lights are that have moved, and times that: wall clock, until the GPU has it.
+    pub(crate) fn move_shadows(&mut self) -> Result<(), HarnessError> {
+        if !self.shadows.is_on() {
+            return Ok(());
+        }
+        let began = Instant::now();
+        self.renderer.move_shadows(&self.lights)?;
+        // The copies run with the next submission.
+        self.gpu.queue.submit([]);
+        self.gpu.wait()?;
+        self.shadow_plan_ms = Some(began.elapsed().as_secs_f64() * 1e3);
+        Ok(())
+    }
+
+    /// The lights for which the atlas has room: those of all frames, if they move.
+    fn lights_of_all_frames(&self) -> Result<Option<LightBuffer>, HarnessError> {
+        let resting = self.moving.as_ref().and_then(Moving::resting);
+        let order = self.lights.order();
+        Ok(resting.map(|all| LightBuffer::ordered(&self.gpu, all, order)).transpose()?)
+    }
+
     /// Makes the maps, draws them and times that: on a GPU the median of a few draws, on a software adapter a single
     /// one.
     fn draw_maps(
@@ -94,7 +120,13 @@ impl Stage {
             return Ok(self.renderer.cast_shadows(&self.lights, model)?);
         }
         let mut clock = PassClock::new(&self.gpu);
-        self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        if let Some(all) = self.lights_of_all_frames()? {
+            self.renderer.cast_shadows(&all, model)?;
+            self.renderer.move_shadows(&self.lights)?;
+            self.renderer.record_shadow_maps(&mut clock);
+        } else {
+            self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        }
         if finds_occluders {
             self.renderer.find_occluders_in(OccluderDepth::Farthest, &mut clock)?;
         }
@@ -110,6 +142,7 @@ impl Stage {
         if model.is_adaptive() || !self.gpu.is_software() {
             for _ in 0..repeats {
                 self.renderer.record_shadow_maps(&mut clock);
+                self.renderer.record_occluders(&mut clock);
                 all_ms.push(ms(&mut clock)?);
             }
         } else {
@@ -159,6 +192,9 @@ impl Stage {
     }
 }
 
+/// The pass of the CPU that plans the maps of lights that move.
+pub(crate) const PLAN_PASS: &str = "shadow-plan";
+
 /// Refuses strategies that leave out hidden lights where no maps say which these are.
 pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<(), CliError> {
     let has_maps = matches!(model, ShadowModel::Maps { .. });
@@ -186,14 +222,20 @@ pub(crate) fn check_shadows(
     if model.is_adaptive() && samples > 1 {
         return refuse("none or maps:N,PX with --msaa 4, because adaptive maps read a G-buffer");
     }
-    if stage.motion.motion.is_some() {
-        return refuse("none with --motion, because maps are drawn once, before the frames");
+    if model.is_adaptive() && stage.motion.motion.is_some() {
+        return refuse("none or maps:N,PX with --motion, because adaptive maps settle under still lights");
+    }
+    if stage.motion.is_on_gpu() {
+        return refuse("none with --moved-by gpu, whose lights the CPU does not know");
     }
     if stage.bounce.vpls > 0 {
         return refuse("none with --vpls, whose lights the CPU does not know");
     }
     if stage.light_order().is_on_gpu() {
-        return refuse("none with --light-order gpu, gpuN and gpuN%, which the CPU does not know");
+        return refuse(
+            "none with --light-order gpu, gpuN and gpuN%, which the CPU does not know (the default with --motion is \
+             gpu: give another one, such as --light-order given)",
+        );
     }
     Ok(())
 }

@@ -47,6 +47,11 @@ impl BoundMaps {
         &self.records
     }
 
+    /// Whether shaders that bind these read the present depths of `other`.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.model == other.model && self.atlas == other.atlas && self.records == other.records
+    }
+
     /// Layout entries of group 2, for the stages that light.
     pub(crate) fn layout(stages: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 2] {
         [

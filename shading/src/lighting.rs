@@ -4,6 +4,7 @@ use assign::{AssignError, Assignment, Gpu, Passes, View, check_listed_reach, tex
 
 use crate::{
     Cut, LightingOptions, Mode, Renderer, ShadingError,
+    bound_maps::BoundMaps,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     layers::LayerPasses,
     lighting_inputs::{Bound, LightingInputs},
@@ -22,6 +23,8 @@ pub struct Lighting {
     kind: Kind,
     layers: Option<LayerPasses>,
     options: LightingOptions,
+    /// The shadow maps that it reads.
+    maps: Option<BoundMaps>,
 }
 
 #[derive(Debug)]
@@ -85,6 +88,7 @@ impl Lighting {
         let needs = strategy.needs();
         let gpu = &renderer.gpu;
         let inputs = LightingInputs::new(gpu, options, renderer.shadow_maps())?;
+        let maps = inputs.maps().cloned();
         let kind = match mode {
             Mode::Deferred | Mode::DeferredIds => {
                 Kind::Deferred(Deferred::new(renderer, lists, needs.models, inputs)?)
@@ -107,7 +111,7 @@ impl Lighting {
             Some(layers) => Some(LayerPasses::new(renderer, layers, lists)?),
             None => None,
         };
-        Ok(Self { kind, layers, options })
+        Ok(Self { kind, layers, options, maps })
     }
 
     /// The options with which it was created.
@@ -116,8 +120,8 @@ impl Lighting {
     }
 
     /// Records the pass `shade`, after the strategy's own passes, and those of layers. Returns an error if the
-    /// prepared lights or the renderer's layers are of a kind for which the shader was not compiled, or if depth or
-    /// winding are.
+    /// prepared lights or the renderer's layers are of a kind for which the shader was not compiled, if depth or
+    /// winding are, or if the shadow maps are not drawn for the lights.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -135,6 +139,7 @@ impl Lighting {
             return Err(ShadingError::Layers { made, drawn: renderer.layer_kinds() });
         }
         lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
+        renderer.check_maps(self.maps.as_ref(), strategy.needs().occluders)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(Forward { pipelines, orientation, scene, has_depth }) => {

@@ -174,6 +174,11 @@ impl LightingInputs {
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
     }
 
+    /// The shadow maps that it binds.
+    pub(crate) fn maps(&self) -> Option<&BoundMaps> {
+        self.shadows.as_ref()
+    }
+
     /// Which resources it holds.
     pub(crate) fn bound(&self) -> Bound {
         Bound {

@@ -121,6 +121,7 @@ impl RasterSpheres {
         if self.orientation != renderer.orientation {
             return Err(ShadingError::Orientation);
         }
+        renderer.check_maps(self.inputs.maps(), false)?;
         // Each fragment adds only one light, so each is checked separately.
         for light in LightTotals::of_each(lights) {
             light.check(&renderer.gpu, self.options, LightReader::Stored(Storage::Lists))?;

@@ -8,7 +8,8 @@ use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
 impl Renderer {
     /// Makes shadow maps for lights that stand still, and draws them, in a submission of its own. It holds for frames
     /// that are prepared afterwards, with [`Lighting`](crate::Lighting) that is made afterwards. Frames with other
-    /// lights are refused until it is called again. [`ShadowModel::None`] removes the maps.
+    /// lights are refused until it is called again, or [`move_shadows`](Self::move_shadows). [`ShadowModel::None`] removes the
+    /// maps.
     ///
     /// Returns what was made; `None` without shadows. If the maps that the model asks for do not fit the largest atlas
     /// of the device, all area lights get fewer, and [`ShadowFigures::fell_back`] says so.
@@ -86,7 +87,8 @@ impl Renderer {
             }
             .into());
         };
-        maps.make_pyramid(&self.gpu, kept)?.record(passes);
+        maps.make_pyramid(&self.gpu, kept)?;
+        maps.record_occluders(passes);
         Ok(maps.figures())
     }
 
@@ -102,12 +104,54 @@ impl Renderer {
         Ok(figures)
     }
 
-    /// Records the pass `shadow-maps`, which draws all maps again, and the pass `occluders` if these
-    /// were asked for; nothing without maps.
-    pub fn record_shadow_maps(&self, passes: &mut dyn Passes) {
-        if let Some(maps) = &self.shadows {
-            maps.record(&self.scene, &self.scene_group, passes);
+    /// Moves the maps with their lights, for frames whose lights are no longer those of
+    /// [`cast_shadows`](Self::cast_shadows). It plans the maps on the CPU and uploads their places, through the queue: call it
+    /// once per submission, before [`prepare`](Self::prepare). Then record [`record_shadow_maps`](Self::record_shadow_maps),
+    /// and [`record_occluders`](Self::record_occluders) for strategies that ask what hides lights, before the strategy's
+    /// passes. [`Lighting`](crate::Lighting) stays the same. Does nothing without maps, and if no light has changed.
+    ///
+    /// The atlas keeps its size. Cast shadows for as many lights as any frame has.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] for lights that the GPU moves, makes or orders, and for models that frames subdivide.
+    /// [`AssignError::Parameter`] if the lights need a larger atlas than those for which shadows were cast. The maps then
+    /// stay as they are.
+    pub fn move_shadows(&mut self, lights: &LightBuffer) -> Result<(), ShadingError> {
+        let Self { gpu, shadows, .. } = self;
+        shadows.as_mut().map_or(Ok(()), |maps| maps.follow(gpu, lights))
+    }
+
+    /// Records the pass `shadow-maps`, which draws all maps again; nothing without maps.
+    pub fn record_shadow_maps(&mut self, passes: &mut dyn Passes) {
+        let Self { scene, scene_group, shadows, .. } = self;
+        if let Some(maps) = shadows {
+            maps.record(scene, scene_group, passes);
         }
+    }
+
+    /// Records the pass `occluders`, which finds again what hides lights from groups, after `shadow-maps`; nothing without
+    /// [`find_occluders`](Self::find_occluders).
+    pub fn record_occluders(&mut self, passes: &mut dyn Passes) {
+        if let Some(maps) = &mut self.shadows {
+            maps.record_occluders(passes);
+        }
+    }
+
+    /// Refuses shaders that read other maps than the renderer's, and maps that were not drawn for the present lights.
+    /// `asks_occluders`: lists were made by what hides lights.
+    pub(crate) fn check_maps(
+        &self,
+        bound: Option<&BoundMaps>,
+        asks_occluders: bool,
+    ) -> Result<(), ShadingError> {
+        let Some(bound) = bound else { return Ok(()) };
+        let is_current = self.shadows.as_ref().is_some_and(|maps| {
+            maps.is_drawn()
+                && maps.bound().is_same(bound)
+                && (!asks_occluders || maps.has_occluders())
+        });
+        if is_current { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 
     /// What was made for the present shadows; `None` without any.

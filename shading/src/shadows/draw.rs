@@ -8,13 +8,14 @@ use crate::{ShadingError, geometry::SceneGpu};
 impl ShadowMaps {
     /// Records the pass `shadow-maps`: the depth of all triangles that a face may show.
     pub(crate) fn record(
-        &self,
+        &mut self,
         scene: &SceneGpu,
         scene_group: &wgpu::BindGroup,
         passes: &mut dyn Passes,
     ) {
         // Nothing is infinitely far.
         self.draw(scene, scene_group, &self.drawn, wgpu::LoadOp::Clear(0.0), passes);
+        (self.is_drawn, self.has_occluders) = (true, false);
     }
 
     /// Draws some faces. Unless the whole atlas is cleared, each of them is.
@@ -54,20 +55,26 @@ impl ShadowMaps {
                 scene.draw_pieces(pass, (scene.has_mask(), self.asked.only_opaque), may_see, pipeline);
             }
         });
+    }
+
+    /// Records the pass `occluders`, if it was asked for.
+    pub(crate) fn record_occluders(&mut self, passes: &mut dyn Passes) {
         if let Some(pyramid) = &self.pyramid {
             pyramid.record(passes);
+            self.has_occluders = true;
         }
     }
 
-    /// Makes the pyramid of depths. [`record`](Self::record) fills it from then on.
+    /// Makes the pyramid of depths. [`record_occluders`](Self::record_occluders) fills it.
     pub(crate) fn make_pyramid(
         &mut self,
         gpu: &Gpu,
         kept: OccluderDepth,
-    ) -> Result<&Pyramid, ShadingError> {
+    ) -> Result<(), ShadingError> {
         let pyramid = Pyramid::new(gpu, self.bound.atlas(), self.figures.atlas_px, kept)?;
         self.figures.occluder_bytes = pyramid.bytes();
-        Ok(self.pyramid.insert(pyramid))
+        self.pyramid = Some(pyramid);
+        Ok(())
     }
 
     /// What hides lights from groups; `None` without a pyramid.

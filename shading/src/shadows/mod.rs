@@ -74,17 +74,19 @@ mod clear_face;
 mod draw;
 mod face;
 mod figures;
+mod moved;
 mod occluders;
 mod plan;
 mod points;
 mod quadtree;
+mod reach;
 mod rectangle;
 mod refine;
 mod sight;
 mod start_level;
 mod views;
 
-use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Passes, View};
+use assign::{FrameBindings, Gpu, Light, LightBuffer, Passes, View};
 use bytemuck::cast_slice;
 
 use crate::{
@@ -100,6 +102,7 @@ use atlas::{atlas, check_device};
 use banding::Drawn;
 use face::Face;
 pub use figures::ShadowFigures;
+use moved::check_known;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::Plan;
@@ -126,6 +129,8 @@ pub(crate) struct ShadowMaps {
     lights: Vec<Light>,
     /// All places of faces, some of which may be free.
     faces: Vec<Face>,
+    /// How many faces there is room for.
+    capacity: usize,
     /// The faces of all maps, ascending.
     drawn: Vec<u32>,
     pipelines: RasterPipelines,
@@ -138,6 +143,9 @@ pub(crate) struct ShadowMaps {
     asked: Asked,
     /// What hides lights from groups, if asked for.
     pyramid: Option<Pyramid>,
+    /// Whether the maps of these lights were drawn, and what hides them from groups was found.
+    is_drawn: bool,
+    has_occluders: bool,
 }
 
 impl ShadowMaps {
@@ -156,14 +164,7 @@ impl ShadowMaps {
     ) -> Result<Self, ShadingError> {
         check_device(gpu)?;
         let Asked { model, ranges, .. } = asked;
-        if lights.order().is_on_gpu() || lights.live_count().is_some() {
-            return Err(AssignError::Unsupported {
-                strategy: format!("shadow model {model}"),
-                asked: "lights that the GPU moves, makes or orders".into(),
-                reason: "the CPU plans the maps, and must know the lights and their order".into(),
-            }
-            .into());
-        }
+        check_known(model, lights)?;
         let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
         let mut plan = Plan::new(lights.lights(), model, most_px)?;
         let adaptive = Adaptive::new(gpu, frame.layout(), &mut plan, lights.lights(), model)?;
@@ -195,6 +196,7 @@ impl ShadowMaps {
             figures,
             lights: lights.lights().to_vec(),
             drawn: (0..figures.faces).collect(),
+            capacity: plan.faces.len(),
             faces: plan.faces,
             pipelines,
             views,
@@ -202,6 +204,8 @@ impl ShadowMaps {
             adaptive,
             asked,
             pyramid: None,
+            is_drawn: false,
+            has_occluders: false,
         };
         maps.count_maps();
         Ok(maps)
@@ -230,6 +234,16 @@ impl ShadowMaps {
             && lights.live_count().is_none()
             && lights.lights() == self.lights;
         if is_same { Ok(()) } else { Err(ShadingError::StaleShadows) }
+    }
+
+    /// Whether the maps of these lights were drawn.
+    pub(crate) fn is_drawn(&self) -> bool {
+        self.is_drawn
+    }
+
+    /// Whether what hides these lights from groups was found.
+    pub(crate) fn has_occluders(&self) -> bool {
+        self.is_drawn && self.has_occluders
     }
 
     /// Whether frames subdivide rectangles.
@@ -268,6 +282,7 @@ impl ShadowMaps {
         fresh.sort_unstable();
         if !fresh.is_empty() {
             self.draw(scene, scene_group, &fresh, wgpu::LoadOp::Load, passes);
+            self.record_occluders(passes);
         }
         Ok(found)
     }

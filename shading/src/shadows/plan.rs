@@ -6,16 +6,13 @@ use glam::{DMat3, DVec3, Mat4, Vec3};
 use super::{
     face::{FACES, Face, across, beyond, turned, view_to_clip, world_to_view},
     points::{LightPoint, points_of},
+    reach::{Reach, axes_of, round_spread},
 };
 use crate::{FEWEST_ADAPTIVE, MAP_COUNTS, ShadowModel};
 
 /// Texels beyond each edge of a face, per texel of the filter's side. The offset along the normal moves a look-up by at
 /// most one texel per texel of the filter, and its taps reach half as far again.
 const GUARD_PX: u32 = 2;
-
-/// Outer half angles of spots up to this one, radians, get one face. A wider one would waste more texels at its edge
-/// than a hemisphere's five faces do.
-const WIDEST_FACE: f32 = std::f32::consts::FRAC_PI_3;
 
 /// The near plane of a map, in ranges of its light. Reversed depth in floating point is as precise for any near plane.
 const NEAR_SHARE: f64 = 1.0 / (1 << 20) as f64;
@@ -67,52 +64,6 @@ impl Site {
     }
 }
 
-/// The directions in which a light shines, as faces of maps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Reach {
-    /// A cone around z: one face, with the tangent of the half angle.
-    Cone(f64),
-    /// The half space around +z: one whole face, and the upper halves of four more.
-    Half,
-    /// All directions: six faces.
-    All,
-}
-
-impl Reach {
-    fn of_light(light: &Light) -> Self {
-        match &light.shape {
-            LightShape::Point => Self::All,
-            LightShape::Spot { outer_angle, .. } if *outer_angle <= WIDEST_FACE => {
-                Self::Cone(f64::from(*outer_angle).tan())
-            }
-            LightShape::Spot { outer_angle, .. } if *outer_angle <= std::f32::consts::FRAC_PI_2 => {
-                Self::Half
-            }
-            LightShape::Spot { .. } => Self::All,
-            LightShape::Area(emitter) if emitter.shines_all_around() => Self::All,
-            LightShape::Area(_) | LightShape::Vpl { .. } => Self::Half,
-        }
-    }
-
-    /// Faces of a map.
-    fn face_count(self) -> usize {
-        match self {
-            Self::Cone(_) => 1,
-            Self::Half => FACES - 1,
-            Self::All => FACES,
-        }
-    }
-
-    /// Squares of the atlas that a map takes. Two halves share one.
-    fn squares(self) -> u64 {
-        match self {
-            Self::Cone(_) => 1,
-            Self::Half => 3,
-            Self::All => FACES as u64,
-        }
-    }
-}
-
 /// Whether a light is a rectangle, whose points are corners of quads.
 fn is_rectangle(light: &Light) -> bool {
     matches!(&light.shape, LightShape::Area(emitter) if emitter.outline() == Outline::Rectangle)
@@ -158,7 +109,7 @@ impl Plan {
         most_px: u32,
     ) -> Result<Self, AssignError> {
         model.check()?;
-        let (px, taps) = (model.px(), model.taps());
+        let px = model.px();
         // The numbers of maps to try, from the most.
         let counts: Vec<u32> = match model {
             ShadowModel::None => {
@@ -191,6 +142,13 @@ impl Plan {
         };
         let total = squares(lights, maps).max(1) as u32;
         let columns = ((f64::from(total)).sqrt().ceil() as u32).clamp(1, columns_most);
+        Ok(Self::place(lights, model, maps, columns))
+    }
+
+    /// Plans so many maps for each area light, in an atlas of so many columns of squares. It has as many rows as it needs.
+    pub(super) fn place(lights: &[Light], model: ShadowModel, maps: u32, columns: u32) -> Self {
+        let (px, taps) = (model.px(), model.taps());
+        let total = squares(lights, maps).max(1) as u32;
         let size = [columns * px, total.div_ceil(columns) * px];
         let mut planner = Planner {
             px,
@@ -234,7 +192,7 @@ impl Plan {
         let map_count = ((records.len() - first) / 3) as u32;
         // Depth differs by at most one greatest difference along each of the two axes.
         let slopes = (2.0 * across) as f32;
-        Ok(Self { records, faces: planner.faces, size, slopes, maps, map_count, sites })
+        Self { records, faces: planner.faces, size, slopes, maps, map_count, sites }
     }
 }
 
@@ -327,37 +285,9 @@ pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
     [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
 }
 
-/// What `shadow.wesl` calls `SPHERE` and `LINE`; 0 for other lights.
-fn round_spread(light: &Light) -> f64 {
-    let LightShape::Area(emitter) = &light.shape else { return 0.0 };
-    match emitter.outline() {
-        Outline::Sphere => -1.0,
-        Outline::Line => -2.0,
-        Outline::Rectangle | Outline::Polygon | Outline::Disc => 0.0,
-    }
-}
-
 /// Single precision, as bits.
 fn bits(value: f64) -> u32 {
     (value as f32).to_bits()
-}
-
-/// Unit axes of a light, world space. z is its direction or normal, if it has one.
-fn axes_of(light: &Light) -> DMat3 {
-    let around = |z: DVec3| {
-        let z = z.normalize_or(DVec3::Z);
-        let x = z.any_orthonormal_vector();
-        DMat3::from_cols(x, z.cross(x), z)
-    };
-    match &light.shape {
-        LightShape::Point => DMat3::IDENTITY,
-        LightShape::Spot { direction, .. } => around(direction.as_dvec3()),
-        LightShape::Vpl { normal, .. } => around(normal.as_dvec3()),
-        LightShape::Area(emitter) if emitter.outline() == Outline::Line => {
-            around(emitter.half_axes()[0].as_dvec3())
-        }
-        LightShape::Area(emitter) => around(emitter.normal().as_dvec3()),
-    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ mod adaptive;
 mod common;
 mod errors;
 mod layers;
+mod moved;
 mod occlusion;
 mod strategies;
 mod truth;
