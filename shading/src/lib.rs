@@ -96,7 +96,7 @@ pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
-    MOST_ADAPTIVE, ShadowModel, TAP_COUNTS,
+    MOST_ADAPTIVE, SOFT_TAP_COUNTS, ShadowModel, TAP_COUNTS,
 };
 pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement};
 pub use targets::Targets;

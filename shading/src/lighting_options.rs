@@ -112,7 +112,8 @@ impl LightingOptions {
             .flag("specular_reach", self.specular_reach.is_some())
             .flag("area_lod", self.kinds.areas && self.area_lod.is_some())
             .flag("suns", !self.suns.is_empty())
-            .flag("shadows", self.shadows.is_on());
+            .flag("shadows", self.shadows.is_on())
+            .flag("pcss", self.shadows.is_soft());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }

@@ -92,7 +92,10 @@ impl LightTotals {
         let taps = u64::from(shadows.taps());
         let side = u64::from(shadows.taps().isqrt());
         let maps = self.areas * u64::from(shadows.maps()) + (self.count - self.areas);
-        self.count + maps * (2 + 2 * side + taps)
+        let look_ups = u64::from(shadows.look_ups());
+        // The loops over look-ups of a soft filter end once each.
+        let soft = if shadows.is_soft() { 2 + look_ups } else { 0 };
+        self.count + maps * (1 + soft + look_ups * (1 + 2 * side + taps))
     }
 
     /// Checks that an adapter can light a sample by all of the lights, because any list may hold
@@ -195,5 +198,8 @@ mod tests {
         // Ten maps of three rows of three texels.
         let shadows = ShadowModel::Maps { maps: 9, px: 64, taps: 9 };
         assert_eq!(totals.rounds_of_shadows(shadows), 2 + 10 * (1 + 4 + 3 * 4));
+        // 4 look-ups for blockers and 4 of the filter.
+        let soft = ShadowModel::Pcss { maps: 9, px: 64, taps: 4 };
+        assert_eq!(totals.rounds_of_shadows(soft), 2 + 10 * (1 + 2 + 8 + 8 * 4));
     }
 }

@@ -30,6 +30,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "specular_reach",
         "suns",
         "shadows",
+        "pcss",
         "area_lod",
         "area_point",
         "area_mrp",
@@ -77,6 +78,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
         .module("package::suns", include_str!("shaders/suns.wesl"))
         .module("package::shadow", include_str!("shaders/shadow.wesl"))
+        .module("package::pcss", include_str!("shaders/pcss.wesl"))
         .module("package::shadow_open", include_str!("shaders/shadow_open.wesl"))
         .module("package::shadow_banding", include_str!("shaders/shadow_banding.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))

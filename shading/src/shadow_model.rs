@@ -12,6 +12,9 @@ pub const MAP_COUNTS: [u32; 6] = [1, 4, 9, 25, 81, 289];
 /// The accepted numbers of taps: squares of 1 to 5 texels.
 pub const TAP_COUNTS: [u32; 5] = [1, 4, 9, 16, 25];
 
+/// The accepted numbers of taps of a soft filter.
+pub const SOFT_TAP_COUNTS: [u32; 6] = [4, 9, 16, 25, 49, 81];
+
 /// The smallest accepted side of a map, texels. The widest filter leaves 12 of 32 texels to a face.
 pub const MIN_MAP_PX: u32 = 32;
 
@@ -44,6 +47,17 @@ pub enum ShadowModel {
         /// Texels that are compared for each map, a square around the sample: one of [`TAP_COUNTS`].
         taps: u32,
     },
+    /// Depth maps whose filter is as wide as the penumbra: percentage-closer soft shadows (Fernando 2005). Each map looks
+    /// for what hides its part of the emitter, and the mean distance of that gives the width. Meant for one map for each
+    /// area light. Lights without an area have hard shadows.
+    Pcss {
+        /// Maps for each area light: one of [`MAP_COUNTS`]. Each is drawn from the middle of its part of the emitter.
+        maps: u32,
+        /// Texels on a side of each map face, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
+        px: u32,
+        /// Look-ups of the search for blockers, and of the filter: one of [`SOFT_TAP_COUNTS`].
+        taps: u32,
+    },
     /// Depth maps as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
     /// refine (Dobetsberger 2025, section 6.3 and algorithm 1). A look-up compares one texel.
     Adaptive {
@@ -67,11 +81,17 @@ impl ShadowModel {
         matches!(self, Self::Adaptive { .. })
     }
 
+    /// Whether the filter is as wide as the penumbra.
+    pub fn is_soft(self) -> bool {
+        matches!(self, Self::Pcss { .. })
+    }
+
     /// Maps for each area light, or the most of them if frames subdivide; 0 without shadows.
     pub fn maps(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { maps, .. } | Self::Adaptive { most: maps, .. } => maps,
+            Self::Maps { maps, .. } | Self::Pcss { maps, .. } => maps,
+            Self::Adaptive { most, .. } => most,
         }
     }
 
@@ -79,16 +99,25 @@ impl ShadowModel {
     pub fn px(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { px, .. } | Self::Adaptive { px, .. } => px,
+            Self::Maps { px, .. } | Self::Pcss { px, .. } | Self::Adaptive { px, .. } => px,
         }
     }
 
-    /// Taps for each map; 0 without shadows.
+    /// Texels that a look-up compares; 0 without shadows.
     pub fn taps(self) -> u32 {
         match self {
             Self::None => 0,
             Self::Maps { taps, .. } => taps,
-            Self::Adaptive { .. } => 1,
+            Self::Pcss { .. } | Self::Adaptive { .. } => 1,
+        }
+    }
+
+    /// Look-ups of each map, for one sample.
+    pub fn look_ups(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Pcss { taps, .. } => 2 * taps,
+            Self::Maps { .. } | Self::Adaptive { .. } => 1,
         }
     }
 
@@ -99,6 +128,9 @@ impl ShadowModel {
             Self::None => true,
             Self::Maps { maps, px, taps } => {
                 MAP_COUNTS.contains(&maps) && has_sides(px) && TAP_COUNTS.contains(&taps)
+            }
+            Self::Pcss { maps, px, taps } => {
+                MAP_COUNTS.contains(&maps) && has_sides(px) && SOFT_TAP_COUNTS.contains(&taps)
             }
             Self::Adaptive { px, down, most } => {
                 has_sides(px)
@@ -116,6 +148,7 @@ impl fmt::Display for ShadowModel {
             Self::None => f.write_str("none"),
             Self::Maps { maps, px, taps: 1 } => write!(f, "maps:{maps},{px}"),
             Self::Maps { maps, px, taps } => write!(f, "maps:{maps},{px},pcf{taps}"),
+            Self::Pcss { maps, px, taps } => write!(f, "maps:{maps},{px},pcss{taps}"),
             Self::Adaptive { px, down, most } => write!(f, "adaptive:{px},{down},{most}"),
         }
     }
@@ -140,15 +173,20 @@ impl FromStr for ShadowModel {
     }
 }
 
-/// `N,PX` or `N,PX,pcfK`.
+/// `N,PX`, `N,PX,pcfK` or `N,PX,pcssK`.
 fn maps_of(numbers: &str) -> Option<ShadowModel> {
     let parts: Vec<&str> = numbers.split(',').collect();
-    let (maps, px, taps) = match parts[..] {
-        [maps, px] => (maps, px, "1"),
-        [maps, px, taps] => (maps, px, taps.strip_prefix("pcf")?),
+    let (maps, px, filter) = match parts[..] {
+        [maps, px] => (maps, px, "pcf1"),
+        [maps, px, filter] => (maps, px, filter),
         _ => return None,
     };
-    Some(ShadowModel::Maps { maps: number(maps)?, px: number(px)?, taps: number(taps)? })
+    let (maps, px) = (number(maps)?, number(px)?);
+    match (filter.strip_prefix("pcf"), filter.strip_prefix("pcss")) {
+        (Some(taps), _) => Some(ShadowModel::Maps { maps, px, taps: number(taps)? }),
+        (_, Some(taps)) => Some(ShadowModel::Pcss { maps, px, taps: number(taps)? }),
+        _ => None,
+    }
 }
 
 /// `PX,DOWN,MOST`.
@@ -178,8 +216,9 @@ impl From<ShadowModel> for String {
 }
 
 /// The accepted models.
-pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK or adaptive:PX,DOWN,MOST, with N of 1, 4, 9, \
-    25, 81 or 289 maps for each area light, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 taps, a test of \
+pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, maps:N,PX,pcssK or adaptive:PX,DOWN,MOST, \
+    with N of 1, 4, 9, 25, 81 or 289 maps for each area light, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 \
+    taps for pcf and 4, 9, 16, 25, 49 or 81 for pcss, a test of \
     bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
 
 fn refused(value: &str) -> AssignError {
@@ -202,6 +241,7 @@ mod tests {
                 models.push(ShadowModel::Maps { maps, px: 32 * maps.min(128), taps });
             }
         }
+        models.extend(SOFT_TAP_COUNTS.map(|taps| ShadowModel::Pcss { maps: 4, px: 64, taps }));
         for down in BAND_DIVISORS {
             for most in [4, 64, 289] {
                 models.push(ShadowModel::Adaptive { px: 32 * most.min(128), down, most });
@@ -232,6 +272,10 @@ mod tests {
             "maps:4,512,pcf",
             "maps:4,512,pcf8",
             "maps:4,512,pcf9,1",
+            "maps:4,512,pcss",
+            "maps:4,512,pcss1",
+            "maps:4,512,pcss8",
+            "maps:4,512,pcss9,1",
             "maps:+4,512",
             "maps:4,99999999999",
             "maps:-4,512",
@@ -251,7 +295,7 @@ mod tests {
             let error = bad.parse::<ShadowModel>().unwrap_err().to_string();
             let expected = format!("shadow model is {bad}: it must be none, maps:N,PX");
             assert!(error.starts_with(&expected), "{error}");
-            for count in MAP_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS) {
+            for count in MAP_COUNTS.iter().chain(&TAP_COUNTS).chain(&SOFT_TAP_COUNTS) {
                 assert!(error.contains(&count.to_string()), "{count} is not named: {error}");
             }
         }

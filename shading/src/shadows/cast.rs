@@ -73,7 +73,8 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] without shadow maps, and [`AssignError::OutOfMemory`].
+    /// [`AssignError::Parameter`] without shadow maps, [`AssignError::Unsupported`] for [`ShadowModel::Pcss`], and
+    /// [`AssignError::OutOfMemory`].
     pub fn find_occluders_in(
         &mut self,
         kept: OccluderDepth,
@@ -87,6 +88,15 @@ impl Renderer {
             }
             .into());
         };
+        let model = maps.figures().model;
+        if model.is_soft() {
+            return Err(AssignError::Unsupported {
+                strategy: "the test of what hides lights".into(),
+                asked: format!("shadow model {model}"),
+                reason: "its filter reads texels far beside a sample".into(),
+            }
+            .into());
+        }
         maps.make_pyramid(&self.gpu, kept)?;
         maps.record_occluders(passes);
         Ok(maps.figures())

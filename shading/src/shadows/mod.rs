@@ -76,6 +76,7 @@ mod face;
 mod figures;
 mod moved;
 mod occluders;
+mod patch;
 mod plan;
 mod points;
 mod quadtree;

@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3, Mat4, Vec3};
 
 use super::{
     face::{FACES, Face, across, beyond, turned, view_to_clip, world_to_view},
+    patch::{PATCH_VECTORS, WIDEST_SEARCH, middles_of, patch_of},
     points::{LightPoint, points_of},
     reach::{Reach, axes_of, round_spread},
 };
@@ -119,7 +120,7 @@ impl Plan {
                     accepted: "a model with maps".into(),
                 });
             }
-            ShadowModel::Maps { maps, .. } => {
+            ShadowModel::Maps { maps, .. } | ShadowModel::Pcss { maps, .. } => {
                 MAP_COUNTS.into_iter().rev().filter(|count| *count <= maps).collect()
             }
             ShadowModel::Adaptive { most, .. } => (FEWEST_ADAPTIVE..=most).rev().collect(),
@@ -155,6 +156,7 @@ impl Plan {
             columns,
             texel: 2.0 / f64::from(px - 2 * GUARD_PX * taps.isqrt()),
             taps: f64::from(taps.isqrt()),
+            soft_taps: model.look_ups() / 2,
             squares: 0,
             faces: Vec::new(),
             maps: Vec::new(),
@@ -180,8 +182,10 @@ impl Plan {
                 records.extend(planner.add(light, waiting, first));
                 continue;
             }
+            let count = maps_of(light, maps) as u32;
             let points = match &light.shape {
-                LightShape::Area(emitter) => points_of(emitter, maps_of(light, maps) as u32),
+                LightShape::Area(emitter) if model.is_soft() => middles_of(emitter, count),
+                LightShape::Area(emitter) => points_of(emitter, count),
                 LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => {
                     vec![LightPoint::MIDDLE]
                 }
@@ -189,7 +193,8 @@ impl Plan {
             records.extend(planner.add(light, points, first));
         }
         records.append(&mut planner.maps);
-        let map_count = ((records.len() - first) / 3) as u32;
+        let vectors = if model.is_soft() { 3 + PATCH_VECTORS } else { 3 };
+        let map_count = ((records.len() - first) / vectors) as u32;
         // Depth differs by at most one greatest difference along each of the two axes.
         let slopes = (2.0 * across) as f32;
         Self { records, faces: planner.faces, size, slopes, maps, map_count, sites }
@@ -204,6 +209,8 @@ struct Planner {
     texel: f64,
     /// Texels on a side of the filter.
     taps: f64,
+    /// Look-ups of a soft filter; 0 without one.
+    soft_taps: u32,
     /// Squares that are taken.
     squares: u32,
     faces: Vec<Face>,
@@ -222,13 +229,17 @@ impl Planner {
         for point in &points {
             // Faces and shading start from the same rounded position.
             let eye = (light.position.as_dvec3() + point.offset).as_vec3();
-            let reach_m = f64::from(light.radius_m()) + point.offset.length();
+            let widest = if self.soft_taps > 0 { WIDEST_SEARCH } else { 1.0 };
+            let reach_m = widest * (f64::from(light.radius_m()) + point.offset.length());
             let faces = self.faces(reach, axes, eye, (near_m, reach_m));
             self.maps.extend([
                 point_record(eye, point.weight),
                 [faces[0], faces[1], faces[2], faces[3]],
-                [faces[4], faces[5], bits(near_m * (1.0 + DEPTH_SLACK)), 0],
+                [faces[4], faces[5], bits(near_m * (1.0 + DEPTH_SLACK)), self.soft_taps],
             ]);
+            if self.soft_taps > 0 {
+                self.maps.extend(patch_of(light, points.len() as u32, axes));
+            }
         }
         let (spread, half) = match reach {
             Reach::Cone(tangent) => (tangent, 0),
@@ -286,7 +297,7 @@ pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
 }
 
 /// Single precision, as bits.
-fn bits(value: f64) -> u32 {
+pub(super) fn bits(value: f64) -> u32 {
     (value as f32).to_bits()
 }
 

@@ -31,6 +31,15 @@ fn lighting_with_shadows_reads_the_maps() {
             assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root}: {used:?}");
         }
     }
+    // Soft filters read the same, in look-ups of surfaces and in the open.
+    for (root, flags) in [
+        ("package::deferred", ["areas", "shadows", "pcss"]),
+        ("package::fog_light", ["areas", "shadows", "pcss"]),
+        ("package::fog_light", ["areas", "spots", "shadows"]),
+    ] {
+        let used = link(root, &Flags::from(flags), Some(LOOK_UPS[0])).used(2);
+        assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root} {flags:?}: {used:?}");
+    }
     // The test for bands reads depth, normals and maps, whatever the options of lighting are.
     let used = link("package::shadow_banding", &Flags::new(), None).used(2);
     assert_eq!(used, [0, 2, MAPS[0], MAPS[1], 28, 29]);

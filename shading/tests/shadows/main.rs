@@ -10,6 +10,7 @@ mod errors;
 mod layers;
 mod moved;
 mod occlusion;
+mod pcss;
 mod strategies;
 mod truth;
 mod walls;

@@ -44,7 +44,7 @@ fn truth(
 }
 
 /// An image times the ratio of two others.
-fn shared(image: &HdrImage, part: &HdrImage, whole: &HdrImage) -> HdrImage {
+pub(crate) fn shared(image: &HdrImage, part: &HdrImage, whole: &HdrImage) -> HdrImage {
     let ratio = |ix: usize, channel: usize| {
         let (part, whole) = (part.pixels[ix][channel], whole.pixels[ix][channel]);
         if whole > 0.0 { part / whole } else { 1.0 }
