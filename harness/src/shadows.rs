@@ -36,8 +36,7 @@ impl Stage {
     ///
     /// # Errors
     ///
-    /// [`CliError`] in a scene with suns, and the errors of
-    /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
+    /// Those of [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
     /// [`Renderer::settle_shadows`](shading::Renderer::settle_shadows).
     pub fn cast_shadows(
         &mut self,
@@ -48,10 +47,7 @@ impl Stage {
         let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
         self.renderer.cast_shadows_within(lit.ranges_lit());
         self.shadows = ShadowModel::None;
-        if model.is_on() && !self.suns.is_empty() {
-            let accepted = "none in a scene with suns, which have no shadow maps";
-            return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
-        }
+        self.renderer.cast_shadows_of_suns(self.suns);
         (self.shadow_draw_ms, self.shadow_plan_ms, self.shadow_rounds) = (None, None, None);
         let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
         self.shadows = model;
@@ -200,7 +196,8 @@ pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<
     let has_maps = matches!(model, ShadowModel::Maps { .. });
     let hides = choices.iter().find(|choice| choice.leaves_out_hidden() && !has_maps);
     hides.map_or(Ok(()), |choice| {
-        let accepted = "combined with --shadows maps:N,PX: only maps that stay say what hides lights from a group";
+        let accepted = "combined with --shadows maps:N,PX: only maps that stay, and of which a look-up reads a few texels, \
+                        say what hides lights from a group";
         Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted))
     })
 }

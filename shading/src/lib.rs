@@ -98,7 +98,9 @@ pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
     MOST_ADAPTIVE, SOFT_TAP_COUNTS, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement};
+pub use shadows::{
+    OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement, SunMapRecord, SunMapsRecord,
+};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

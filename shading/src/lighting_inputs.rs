@@ -110,7 +110,7 @@ impl LightingInputs {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] if the options ask for other shadows than those of the maps, and for shadows of suns.
+    /// [`AssignError::Parameter`] if the options ask for other shadows than those of the maps, or for other suns.
     pub(crate) fn new(
         gpu: &Gpu,
         options: LightingOptions,
@@ -158,7 +158,8 @@ impl LightingInputs {
         let table = bound.table.then(|| storage_entry(LTC_BINDING, stages, true));
         let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
         let shadows = bound.shadows.then(|| BoundMaps::layout(stages));
-        let shadows = shadows.into_iter().flatten();
+        let sun_maps = (bound.shadows && bound.suns).then(|| BoundMaps::sun_layout(stages));
+        let shadows = shadows.into_iter().flatten().chain(sun_maps);
         [uniform_entry(LIGHTING_BINDING, stages)]
             .into_iter()
             .chain(table)
@@ -170,7 +171,8 @@ impl LightingInputs {
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
         let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
-        let shadows = self.shadows.iter().flat_map(BoundMaps::entries);
+        let sun_maps = self.shadows.as_ref().filter(|_| self.suns.is_some()).map(BoundMaps::sun_entry);
+        let shadows = self.shadows.iter().flat_map(BoundMaps::entries).chain(sun_maps);
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
     }
 
@@ -210,14 +212,14 @@ fn bound_maps(
         let (field, value) = ("shadow model".into(), options.shadows.to_string());
         Err(AssignError::Parameter { field, value, accepted })
     };
-    if !options.suns.is_empty() {
-        return refuse("none with suns, which have no maps".into());
-    }
     match maps {
         None => refuse("none before Renderer::cast_shadows".into()),
         Some(maps) if maps.model() != options.shadows => {
             refuse(format!("{}, the model of the renderer's maps, or none", maps.model()))
         }
+        Some(maps) if maps.suns() != options.suns => refuse(
+            "none with other suns than those of Renderer::cast_shadows_of_suns before Renderer::cast_shadows".into(),
+        ),
         Some(maps) if maps.ranges() < options.ranges_lit() => refuse(format!(
             "none where lights reach {} of their ranges: the maps hold what hides samples within {}. Call \
              Renderer::cast_shadows_within with as many before Renderer::cast_shadows",

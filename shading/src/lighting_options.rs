@@ -45,7 +45,7 @@ pub struct LightingOptions {
     /// compiled and nothing is bound for them.
     pub suns: Suns,
     /// How lights are shadowed. Other than [`ShadowModel::None`], it must be the model of the renderer's maps
-    /// ([`Renderer::cast_shadows`](crate::Renderer::cast_shadows)), without suns. Off, nothing is
+    /// ([`Renderer::cast_shadows`](crate::Renderer::cast_shadows)), with these suns. Off, nothing is
     /// compiled or bound for it.
     pub shadows: ShadowModel,
 }

@@ -142,9 +142,12 @@ impl LightTotals {
 
 /// One round for each sun and one to end, if there are suns.
 fn rounds_of_suns(options: LightingOptions) -> u64 {
+    let taps = u64::from(options.shadows.taps());
+    // One for each row and texel of a map, and one to end each loop.
+    let of_map = if taps > 0 { 1 + 2 * taps.isqrt() + taps } else { 0 };
     match options.suns.as_slice().len() as u64 {
         0 => 0,
-        count => count + 1,
+        count => count * (1 + of_map) + 1,
     }
 }
 

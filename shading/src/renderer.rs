@@ -1,6 +1,8 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
-use assign::{AssignError, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, View};
+use assign::{
+    AssignError, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, Suns, View,
+};
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
 
@@ -32,7 +34,7 @@ pub struct Renderer {
     /// [`Frame::seed`] of the next frame.
     seed: u32,
     models: Vec<ModelBox>,
-    surface_bounds: (Vec3, Vec3),
+    pub(crate) surface_bounds: (Vec3, Vec3),
     shared: SharedPasses,
     /// What is drawn over the opaque surfaces.
     pub(crate) layers: Option<LayerScene>,
@@ -40,6 +42,8 @@ pub struct Renderer {
     pub(crate) shadows: Option<ShadowMaps>,
     /// How far from their lights samples may lie that shadow maps serve, in ranges of the lights.
     pub(crate) shadow_ranges: f32,
+    /// The suns that get shadow maps.
+    pub(crate) shadow_suns: Suns,
     /// The pass that makes the image of several samples per pixel.
     pub(crate) resolve: Option<Resolve>,
 }
@@ -74,6 +78,7 @@ impl Renderer {
             layers: None,
             shadows: None,
             shadow_ranges: f32::INFINITY,
+            shadow_suns: Suns::default(),
             resolve: None,
         })
     }
@@ -106,6 +111,7 @@ impl Renderer {
             layers: None,
             shadows: None,
             shadow_ranges: f32::INFINITY,
+            shadow_suns: Suns::default(),
             resolve: None,
         })
     }

@@ -79,6 +79,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::suns", include_str!("shaders/suns.wesl"))
         .module("package::shadow", include_str!("shaders/shadow.wesl"))
         .module("package::pcss", include_str!("shaders/pcss.wesl"))
+        .module("package::sun_shadow", include_str!("shaders/sun_shadow.wesl"))
         .module("package::shadow_open", include_str!("shaders/shadow_open.wesl"))
         .module("package::shadow_banding", include_str!("shaders/shadow_banding.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))

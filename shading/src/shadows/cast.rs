@@ -1,8 +1,8 @@
 //! A renderer with shadow maps.
 
-use assign::{AssignError, EncoderPasses, LightBuffer, Passes};
+use assign::{AssignError, EncoderPasses, LightBuffer, Passes, Suns};
 
-use super::{Asked, OccluderDepth, ShadowFigures, ShadowMaps};
+use super::{Asked, OccluderDepth, ShadowFigures, ShadowMaps, SunnyScene};
 use crate::{Renderer, ShadingError, ShadowModel, bound_maps::BoundMaps};
 
 impl Renderer {
@@ -38,6 +38,12 @@ impl Renderer {
         self.shadow_ranges = ranges;
     }
 
+    /// Has maps that are cast afterwards shadow suns, too: each gets one map of the whole scene, with as many texels as a
+    /// face of a light's map. [`LightingOptions::suns`](crate::LightingOptions::suns) must then be these.
+    pub fn cast_shadows_of_suns(&mut self, suns: Suns) {
+        self.shadow_suns = suns;
+    }
+
     /// [`cast_shadows`](Self::cast_shadows), but records the pass `shadow-maps` into `passes`. The caller submits them
     /// before the first frame that reads the maps, and can time them.
     ///
@@ -59,6 +65,7 @@ impl Renderer {
             model,
             ranges: self.shadow_ranges,
             only_opaque: self.layer_kinds().sheets,
+            sunny: SunnyScene { suns: self.shadow_suns, bounds: self.surface_bounds },
         };
         let maps = ShadowMaps::new(&self.gpu, &self.scene, &self.frame, lights, asked)?;
         let figures = maps.figures();

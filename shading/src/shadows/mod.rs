@@ -85,6 +85,7 @@ mod rectangle;
 mod refine;
 mod sight;
 mod start_level;
+mod sun_maps;
 mod views;
 
 use assign::{FrameBindings, Gpu, Light, LightBuffer, Passes, View};
@@ -107,6 +108,8 @@ use moved::check_known;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::Plan;
+pub(crate) use sun_maps::SunnyScene;
+pub use sun_maps::{SunMapRecord, SunMapsRecord};
 use views::Views;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
@@ -120,6 +123,8 @@ pub(crate) struct Asked {
     pub(crate) ranges: f32,
     /// Whether transparent surfaces cast no shadows.
     pub(crate) only_opaque: bool,
+    /// What suns light.
+    pub(crate) sunny: SunnyScene,
 }
 
 /// The shadow maps of a scene's lights.
@@ -167,12 +172,12 @@ impl ShadowMaps {
         let Asked { model, ranges, .. } = asked;
         check_known(model, lights)?;
         let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
-        let mut plan = Plan::new(lights.lights(), model, most_px)?;
+        let mut plan = Plan::new(lights.lights(), asked.sunny, model, most_px)?;
         let adaptive = Adaptive::new(gpu, frame.layout(), &mut plan, lights.lights(), model)?;
         let figures = ShadowFigures {
             model,
             maps_per_area_light: plan.maps,
-            maps: plan.map_count,
+            maps: plan.map_count + asked.sunny.squares(),
             faces: plan.faces.len() as u32,
             atlas_px: plan.size,
             occluder_bytes: 0,
@@ -183,6 +188,8 @@ impl ShadowMaps {
         let atlas = gpu.allocate("the atlas of shadow maps", figures.atlas_bytes(), || {
             atlas(gpu, plan.size)
         })?;
+        let sun_maps = gpu.uniform("maps of suns", size_of::<SunMapsRecord>() as u64);
+        gpu.queue.write_buffer(&sun_maps, 0, bytemuck::bytes_of(&plan.suns));
         let (views, layout) = Views::new(gpu, &plan.faces)?;
         let pipelines = RasterPipelines::new(
             gpu,
@@ -193,7 +200,7 @@ impl ShadowMaps {
         )?;
         let subdivided = plan.sites.len() as u32 * plan.maps;
         let mut maps = Self {
-            fixed_maps: plan.map_count - subdivided,
+            fixed_maps: figures.maps - subdivided,
             figures,
             lights: lights.lights().to_vec(),
             drawn: (0..figures.faces).collect(),
@@ -201,7 +208,7 @@ impl ShadowMaps {
             faces: plan.faces,
             pipelines,
             views,
-            bound: BoundMaps::new(model, ranges, atlas, records),
+            bound: BoundMaps::new(model, ranges, atlas, records, (asked.sunny.suns, sun_maps)),
             adaptive,
             asked,
             pyramid: None,

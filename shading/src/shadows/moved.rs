@@ -33,7 +33,12 @@ impl ShadowMaps {
         }
         let [width, height] = self.figures.atlas_px;
         let columns = width / model.px();
-        let plan = Plan::place(lights.lights(), model, self.figures.maps_per_area_light, columns);
+        let plan = Plan::place(
+            lights.lights(),
+            self.asked.sunny,
+            model,
+            (self.figures.maps_per_area_light, columns),
+        );
         let records: &[u8] = cast_slice(&plan.records);
         let fits = plan.size[1] <= height
             && plan.faces.len() <= self.capacity
@@ -52,7 +57,7 @@ impl ShadowMaps {
         }
         gpu.queue.write_buffer(self.bound.records(), 0, records);
         self.views.write(gpu, &plan.faces);
-        self.figures.maps = plan.map_count;
+        self.figures.maps = plan.map_count + self.asked.sunny.squares();
         self.figures.faces = plan.faces.len() as u32;
         self.drawn = (0..self.figures.faces).collect();
         self.faces = plan.faces;

@@ -14,9 +14,9 @@
 //!
 //! Fernando's width of a penumbra is the same: size of the light times `(receiver - blocker) / blocker`.
 //!
-//! 1. *Search.* Directions `R + u q` are looked up for K points `u` with `q` between 0 and `|R| / U`, where no `u` is longer
-//!    than `U`. So the search reaches 45 degrees to the side at most, and is the denser the nearer to `R`: a blocker near the
-//!    sample hides it only there. A surface found in a direction with `q` is a blocker if it stands nearer to the light than
+//! 1. *Search.* Directions `R + u q` are looked up for K points `u`, each for another depth. The depths `f` are spread evenly
+//!    along the line, from the sample to where the search would reach 45 degrees to the side: `q = |R| / U`, where no `u` is
+//!    longer than `U`. So most look-ups are near `R`, because a blocker near the sample hides it only there. A surface found in a direction with `q` is a blocker if it stands nearer to the light than
 //!    the sample's plane, and if `1 / f - 1 >= q`. Otherwise it lies beside all lines from the sample to the patch.
 //!    Fernando counts these, too.
 //! 2. *Width.* The mean `f` of the blockers gives one `q`, at most that of the search. Without a blocker the share is 1.

@@ -8,6 +8,7 @@ use super::{
     patch::{PATCH_VECTORS, WIDEST_SEARCH, middles_of, patch_of},
     points::{LightPoint, points_of},
     reach::{Reach, axes_of, round_spread},
+    sun_maps::{SunMapsRecord, SunnyScene},
 };
 use crate::{FEWEST_ADAPTIVE, MAP_COUNTS, ShadowModel};
 
@@ -40,6 +41,8 @@ pub(super) struct Plan {
     pub(super) map_count: u32,
     /// The rectangles that frames subdivide, ascending. Their maps are placed, and wait for their points.
     pub(super) sites: Vec<Site>,
+    /// The maps of suns, which are the first faces.
+    pub(super) suns: SunMapsRecord,
 }
 
 /// Where the maps of a light lie whose points change.
@@ -106,6 +109,7 @@ impl Plan {
     /// [`AssignError::Parameter`] if not even one map for each light fits, or the model is faulty or off.
     pub(super) fn new(
         lights: &[Light],
+        sunny: SunnyScene,
         model: ShadowModel,
         most_px: u32,
     ) -> Result<Self, AssignError> {
@@ -128,7 +132,8 @@ impl Plan {
         let columns_most = most_px / px;
         let most = u64::from(columns_most).pow(2);
         let fewest = counts.last().copied().unwrap_or(1);
-        let fits = |maps: u32| squares(lights, maps) <= most;
+        let squares = |maps: u32| squares(lights, maps) + u64::from(sunny.squares());
+        let fits = |maps: u32| squares(maps) <= most;
         let maps = counts.into_iter().filter(|_| fits(fewest)).find(|maps| fits(*maps));
         let Some(maps) = maps else {
             return Err(AssignError::Parameter {
@@ -137,28 +142,35 @@ impl Plan {
                 accepted: format!(
                     "one whose maps fit an atlas of {most_px}x{most_px} texels: {fewest} for each area light and one \
                      for each other light take {} squares of {px} texels, and {most} fit",
-                    squares(lights, fewest)
+                    squares(fewest)
                 ),
             });
         };
-        let total = squares(lights, maps).max(1) as u32;
+        let total = squares(maps).max(1) as u32;
         let columns = ((f64::from(total)).sqrt().ceil() as u32).clamp(1, columns_most);
-        Ok(Self::place(lights, model, maps, columns))
+        Ok(Self::place(lights, sunny, model, (maps, columns)))
     }
 
     /// Plans so many maps for each area light, in an atlas of so many columns of squares. It has as many rows as it needs.
-    pub(super) fn place(lights: &[Light], model: ShadowModel, maps: u32, columns: u32) -> Self {
+    pub(super) fn place(
+        lights: &[Light],
+        sunny: SunnyScene,
+        model: ShadowModel,
+        (maps, columns): (u32, u32),
+    ) -> Self {
         let (px, taps) = (model.px(), model.taps());
-        let total = squares(lights, maps).max(1) as u32;
+        let total = (squares(lights, maps) as u32 + sunny.squares()).max(1);
+        let guard = GUARD_PX * taps.isqrt();
+        let (sun_faces, suns) = sunny.maps(columns, px, (guard, taps.isqrt()));
         let size = [columns * px, total.div_ceil(columns) * px];
         let mut planner = Planner {
             px,
             columns,
-            texel: 2.0 / f64::from(px - 2 * GUARD_PX * taps.isqrt()),
+            texel: 2.0 / f64::from(px - 2 * guard),
             taps: f64::from(taps.isqrt()),
             soft_taps: model.look_ups() / 2,
-            squares: 0,
-            faces: Vec::new(),
+            squares: sunny.squares(),
+            faces: sun_faces,
             maps: Vec::new(),
         };
         // The farthest texel centre that a look-up reads, along one axis and in all.
@@ -197,7 +209,7 @@ impl Plan {
         let map_count = ((records.len() - first) / vectors) as u32;
         // Depth differs by at most one greatest difference along each of the two axes.
         let slopes = (2.0 * across) as f32;
-        Self { records, faces: planner.faces, size, slopes, maps, map_count, sites }
+        Self { records, faces: planner.faces, size, slopes, maps, map_count, sites, suns }
     }
 }
 

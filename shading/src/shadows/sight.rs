@@ -49,12 +49,15 @@ mod tests {
     use glam::Mat4;
 
     use super::*;
-    use crate::{ShadowModel, shadows::plan::Plan};
+    use crate::{
+        ShadowModel,
+        shadows::{SunnyScene, plan::Plan},
+    };
 
     fn faces() -> Vec<Face> {
         let light = Light::point(Vec3::new(1.0, 2.0, 3.0), 4.0, Vec3::ONE);
         let model = ShadowModel::Maps { maps: 1, px: 128, taps: 1 };
-        Plan::new(&[light], model, 4096).expect("a plan").faces
+        Plan::new(&[light], SunnyScene::default(), model, 4096).expect("a plan").faces
     }
 
     /// The faces that may see a box of 2 cm at a place relative to the light.

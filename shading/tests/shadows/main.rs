@@ -12,6 +12,7 @@ mod moved;
 mod occlusion;
 mod pcss;
 mod strategies;
+mod suns;
 mod truth;
 mod walls;
 

@@ -92,7 +92,7 @@ fn maps_that_follow_lights_show_what_maps_cast_for_them_show() {
     let gpu = common::gpu();
     let view = common::view([64, 40]);
     let model = maps(4, 64, 4);
-    let buffer = |frame| LightBuffer::ordered(&gpu, &lights(frame), LightOrder::Bvh).unwrap();
+    let buffer = |frame| LightBuffer::new(&gpu, &lights(frame)).unwrap();
     let first = buffer(0);
     let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
     renderer.cast_shadows(&first, model).unwrap();
