@@ -318,12 +318,7 @@ mod tests {
 
     #[test]
     fn shadows_are_refused_where_there_are_no_maps() {
-        for option in [
-            "--motion drift",
-            "--vpls 64",
-            "--light-order gpu",
-            "--unbounded",
-        ] {
+        for option in ["--motion drift", "--vpls 64", "--light-order gpu", "--unbounded"] {
             let line = format!("--shadows maps:4,64 {option}");
             let error = check(&line).expect_err(option).to_string();
             let name = option.split(' ').next().expect("a name");

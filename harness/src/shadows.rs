@@ -31,8 +31,8 @@ pub struct Casting {
 impl Stage {
     /// Makes shadow maps for its lights and draws them before all frames. If lights move, each frame draws the maps again
     /// ([`Painter`](crate::painter::Painter)), and the atlas has room for the lights of all frames. With an adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. If asked
-    /// to, it also finds what hides lights from groups, for strategies with `/occ`. Returns a warning if area lights got
-    /// fewer maps than asked for.
+    /// to, it also finds what hides lights from groups, for strategies with `/occ`. Returns warnings: if area lights got
+    /// fewer maps than asked for, and if the model is wrong for large triangles.
     ///
     /// # Errors
     ///
@@ -42,14 +42,15 @@ impl Stage {
         &mut self,
         model: ShadowModel,
         Casting { cut, finds_occluders }: Casting,
-    ) -> Result<Option<String>, HarnessError> {
+    ) -> Result<Vec<String>, HarnessError> {
         let specular_reach = self.specular_reach;
         let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
         self.renderer.cast_shadows_within(lit.ranges_lit());
         self.shadows = ShadowModel::None;
         self.renderer.cast_shadows_of_suns(self.suns);
         (self.shadow_draw_ms, self.shadow_plan_ms, self.shadow_rounds) = (None, None, None);
-        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
+        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(Vec::new()) };
+        let mut warnings = Vec::new();
         self.shadows = model;
         let [width, height] = figures.atlas_px;
         say(format!(
@@ -72,16 +73,24 @@ impl Stage {
                 adaptive.banding_ms.unwrap_or_default()
             ));
         }
-        let warning = figures.fell_back().then(|| {
+        if model.is_curved() {
+            let warning = format!(
+                "--shadows {model}: paraboloids bend the edges of triangles. Shadows are wrong where triangles are \
+                 large beside their distance from a light"
+            );
+            say(format!("warning  {warning}"));
+            warnings.push(warning);
+        }
+        if figures.fell_back() {
             let only = if model.is_adaptive() { "at most" } else { "only" };
             let warning = format!(
                 "--shadows {model}: {only} {} maps for each area light fit an atlas of this device",
                 figures.maps_per_area_light
             );
             say(format!("warning  {warning}"));
-            warning
-        });
-        Ok(warning)
+            warnings.push(warning);
+        }
+        Ok(warnings)
     }
 
     /// Has the maps look from where lights are that have moved, and times that: wall clock, until the GPU has it.
@@ -220,13 +229,17 @@ pub(crate) fn check_shadows(
         return refuse("none or maps:N,PX with --msaa 4, because adaptive maps read a G-buffer");
     }
     if model.is_adaptive() && stage.motion.motion.is_some() {
-        return refuse("none or maps:N,PX with --motion, because adaptive maps settle under still lights");
+        return refuse(
+            "none or maps:N,PX with --motion, because adaptive maps settle under still lights",
+        );
     }
     if stage.motion.is_on_gpu() {
         return refuse("none with --moved-by gpu, whose lights the CPU does not know");
     }
-    if stage.bounce.vpls > 0 {
-        return refuse("none with --vpls, whose lights the CPU does not know");
+    if stage.bounce.vpls > 0 && stage.light_order().is_on_gpu() {
+        return refuse(
+            "none with --vpls, whose lights the CPU does not know (unless --light-order given, morton or bvh reads them back)",
+        );
     }
     if stage.light_order().is_on_gpu() {
         return refuse(

@@ -171,7 +171,8 @@ impl LightingInputs {
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
         let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
-        let sun_maps = self.shadows.as_ref().filter(|_| self.suns.is_some()).map(BoundMaps::sun_entry);
+        let sun_maps =
+            self.shadows.as_ref().filter(|_| self.suns.is_some()).map(BoundMaps::sun_entry);
         let shadows = self.shadows.iter().flat_map(BoundMaps::entries).chain(sun_maps);
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
     }

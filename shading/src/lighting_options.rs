@@ -113,7 +113,8 @@ impl LightingOptions {
             .flag("area_lod", self.kinds.areas && self.area_lod.is_some())
             .flag("suns", !self.suns.is_empty())
             .flag("shadows", self.shadows.is_on())
-            .flag("pcss", self.shadows.is_soft());
+            .flag("pcss", self.shadows.is_soft())
+            .flag("paraboloids", self.shadows.is_curved());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }

@@ -1,8 +1,6 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
-use assign::{
-    AssignError, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, Suns, View,
-};
+use assign::{AssignError, Frame, FrameBindings, Gpu, ModelBox, Passes, SampleDomain, Suns, View};
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
 

@@ -58,7 +58,16 @@ pub enum ShadowModel {
         /// Look-ups of the search for blockers, and of the filter: one of [`SOFT_TAP_COUNTS`].
         taps: u32,
     },
-    /// Depth maps as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
+    /// Depth maps that are paraboloids: one square holds all directions of half a space (Brabec et al. 2002; Dobetsberger
+    /// 2025, section 6.1). Vertices are projected, and edges between them are drawn straight, which bends them. So maps are
+    /// wrong where triangles are large beside their distance from the light. A look-up compares one texel.
+    Paraboloids {
+        /// Maps for each area light: one of [`MAP_COUNTS`].
+        maps: u32,
+        /// Texels on a side of each square, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
+        px: u32,
+    },
+    /// Depth maps with flat faces as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
     /// refine (Dobetsberger 2025, section 6.3 and algorithm 1). A look-up compares one texel.
     Adaptive {
         /// Texels on a side of each map face, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
@@ -86,11 +95,18 @@ impl ShadowModel {
         matches!(self, Self::Pcss { .. })
     }
 
+    /// Whether maps are paraboloids.
+    pub fn is_curved(self) -> bool {
+        matches!(self, Self::Paraboloids { .. })
+    }
+
     /// Maps for each area light, or the most of them if frames subdivide; 0 without shadows.
     pub fn maps(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { maps, .. } | Self::Pcss { maps, .. } => maps,
+            Self::Maps { maps, .. } | Self::Pcss { maps, .. } | Self::Paraboloids { maps, .. } => {
+                maps
+            }
             Self::Adaptive { most, .. } => most,
         }
     }
@@ -99,7 +115,8 @@ impl ShadowModel {
     pub fn px(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { px, .. } | Self::Pcss { px, .. } | Self::Adaptive { px, .. } => px,
+            Self::Maps { px, .. } | Self::Pcss { px, .. } => px,
+            Self::Paraboloids { px, .. } | Self::Adaptive { px, .. } => px,
         }
     }
 
@@ -108,7 +125,7 @@ impl ShadowModel {
         match self {
             Self::None => 0,
             Self::Maps { taps, .. } => taps,
-            Self::Pcss { .. } | Self::Adaptive { .. } => 1,
+            Self::Pcss { .. } | Self::Paraboloids { .. } | Self::Adaptive { .. } => 1,
         }
     }
 
@@ -117,7 +134,7 @@ impl ShadowModel {
         match self {
             Self::None => 0,
             Self::Pcss { taps, .. } => 2 * taps,
-            Self::Maps { .. } | Self::Adaptive { .. } => 1,
+            Self::Maps { .. } | Self::Paraboloids { .. } | Self::Adaptive { .. } => 1,
         }
     }
 
@@ -132,6 +149,7 @@ impl ShadowModel {
             Self::Pcss { maps, px, taps } => {
                 MAP_COUNTS.contains(&maps) && has_sides(px) && SOFT_TAP_COUNTS.contains(&taps)
             }
+            Self::Paraboloids { maps, px } => MAP_COUNTS.contains(&maps) && has_sides(px),
             Self::Adaptive { px, down, most } => {
                 has_sides(px)
                     && BAND_DIVISORS.contains(&down)
@@ -149,6 +167,7 @@ impl fmt::Display for ShadowModel {
             Self::Maps { maps, px, taps: 1 } => write!(f, "maps:{maps},{px}"),
             Self::Maps { maps, px, taps } => write!(f, "maps:{maps},{px},pcf{taps}"),
             Self::Pcss { maps, px, taps } => write!(f, "maps:{maps},{px},pcss{taps}"),
+            Self::Paraboloids { maps, px } => write!(f, "maps:{maps},{px},paraboloid"),
             Self::Adaptive { px, down, most } => write!(f, "adaptive:{px},{down},{most}"),
         }
     }
@@ -173,7 +192,7 @@ impl FromStr for ShadowModel {
     }
 }
 
-/// `N,PX`, `N,PX,pcfK` or `N,PX,pcssK`.
+/// `N,PX`, `N,PX,pcfK`, `N,PX,pcssK` or `N,PX,paraboloid`.
 fn maps_of(numbers: &str) -> Option<ShadowModel> {
     let parts: Vec<&str> = numbers.split(',').collect();
     let (maps, px, filter) = match parts[..] {
@@ -182,6 +201,9 @@ fn maps_of(numbers: &str) -> Option<ShadowModel> {
         _ => return None,
     };
     let (maps, px) = (number(maps)?, number(px)?);
+    if filter == "paraboloid" {
+        return Some(ShadowModel::Paraboloids { maps, px });
+    }
     match (filter.strip_prefix("pcf"), filter.strip_prefix("pcss")) {
         (Some(taps), _) => Some(ShadowModel::Maps { maps, px, taps: number(taps)? }),
         (_, Some(taps)) => Some(ShadowModel::Pcss { maps, px, taps: number(taps)? }),
@@ -216,7 +238,8 @@ impl From<ShadowModel> for String {
 }
 
 /// The accepted models.
-pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, maps:N,PX,pcssK or adaptive:PX,DOWN,MOST, \
+pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, maps:N,PX,pcssK, maps:N,PX,paraboloid or \
+    adaptive:PX,DOWN,MOST, \
     with N of 1, 4, 9, 25, 81 or 289 maps for each area light, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 \
     taps for pcf and 4, 9, 16, 25, 49 or 81 for pcss, a test of \
     bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
@@ -241,6 +264,7 @@ mod tests {
                 models.push(ShadowModel::Maps { maps, px: 32 * maps.min(128), taps });
             }
         }
+        models.extend(MAP_COUNTS.map(|maps| ShadowModel::Paraboloids { maps, px: 64 }));
         models.extend(SOFT_TAP_COUNTS.map(|taps| ShadowModel::Pcss { maps: 4, px: 64, taps }));
         for down in BAND_DIVISORS {
             for most in [4, 64, 289] {
@@ -272,6 +296,9 @@ mod tests {
             "maps:4,512,pcf",
             "maps:4,512,pcf8",
             "maps:4,512,pcf9,1",
+            "maps:4,512,paraboloids",
+            "maps:4,512,paraboloid,pcf4",
+            "maps:4,513,paraboloid",
             "maps:4,512,pcss",
             "maps:4,512,pcss1",
             "maps:4,512,pcss8",

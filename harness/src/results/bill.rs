@@ -226,7 +226,8 @@ mod tests {
         assert_eq!(passes_of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
         assert_eq!(passes_of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
         // All methods draw the maps of lights that move; those with `/occ` pay for what they ask of them.
-        let moving = [("shadow-plan", 1.0), ("shadow-maps", 3.0), ("occluders", 1.0), ("shade", 1.0)];
+        let moving =
+            [("shadow-plan", 1.0), ("shadow-maps", 3.0), ("occluders", 1.0), ("shade", 1.0)];
         let moving = record("T-E/28x28/occ", Mode::Deferred, &moving);
         assert_eq!((moving.times.assign_ms, moving.times.frame_ms), (1.0, 6.0));
     }

@@ -80,7 +80,8 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] without shadow maps, [`AssignError::Unsupported`] for [`ShadowModel::Pcss`], and
+    /// [`AssignError::Parameter`] without shadow maps, [`AssignError::Unsupported`] for [`ShadowModel::Pcss`] and
+    /// [`ShadowModel::Paraboloids`], and
     /// [`AssignError::OutOfMemory`].
     pub fn find_occluders_in(
         &mut self,
@@ -96,11 +97,11 @@ impl Renderer {
             .into());
         };
         let model = maps.figures().model;
-        if model.is_soft() {
+        if model.is_soft() || model.is_curved() {
             return Err(AssignError::Unsupported {
                 strategy: "the test of what hides lights".into(),
                 asked: format!("shadow model {model}"),
-                reason: "its filter reads texels far beside a sample".into(),
+                reason: "it knows which texels flat faces with small filters read".into(),
             }
             .into());
         }

@@ -51,8 +51,11 @@ impl ShadowMaps {
                 pass.set_bind_group(2, scene_group, &[]);
                 let sight = Sight::new(face, self.asked.ranges);
                 let may_see = |bounds| sight.may_see(bounds);
-                let pipeline = |key| self.pipelines.get(key);
-                scene.draw_pieces(pass, (scene.has_mask(), self.asked.only_opaque), may_see, pipeline);
+                let curved = self.curved.as_ref().filter(|_| face.is_curved);
+                let textures = curved.is_some() || scene.has_mask();
+                let pipelines = curved.unwrap_or(&self.pipelines);
+                let pipeline = |key| pipelines.get(key);
+                scene.draw_pieces(pass, (textures, self.asked.only_opaque), may_see, pipeline);
             }
         });
     }

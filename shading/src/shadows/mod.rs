@@ -47,6 +47,27 @@
 //! `4 depth / px + depth / 1024`, or as many more texels as the filter is wide. The offset of a sample follows the shading
 //! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
 //!
+//! # Soft filters
+//!
+//! With [`ShadowModel::Pcss`], each map looks for what hides its part of the light, and filters as widely as that makes the
+//! penumbra ([`patch`]). Each look-up has the offsets of a single texel.
+//!
+//! # Paraboloids
+//!
+//! With [`ShadowModel::Paraboloids`], half the space is one square: the direction at the angle `t` to the axis lies
+//! `tan(t / 2)` from the middle. A look-up takes the offset of a flat face across the line from the light to the sample. The
+//! rasteriser draws straight edges, so large triangles are wrong ([`ShadowModel::Paraboloids`]).
+//!
+//! # Layers
+//!
+//! Transparent surfaces are looked up as opaque ones. Fog and particles have no normal: no point stands below their horizon,
+//! nothing is moved along a normal, and a patch counts by its solid angle (`shadow_open.wesl`). Surfaces that are drawn as
+//! layers cast no shadow.
+//!
+//! # Suns
+//!
+//! Each sun has one orthographic map of the whole scene ([`sun_maps`]), in the same atlas.
+//!
 //! # Subdivision
 //!
 //! With [`ShadowModel::Adaptive`], [`quadtree`] divides each rectangle where frames show bands (Dobetsberger 2025,
@@ -56,8 +77,9 @@
 //!
 //! # Cost
 //!
-//! Maps hold while lights and scene stand still, so they are drawn once, before the frames. Shading reads
-//! `maps * taps` texels per light and sample. A map of an area light takes `3 px^2` texels of 4 bytes if it is
+//! Maps hold while lights and scene stand still, so they are drawn once, before the frames. If lights move, each frame plans
+//! and draws all maps again ([`moved`]), which must be lights that the CPU knows. Shading reads `maps * taps` texels per light
+//! and sample, and twice as many with a soft filter. A map of an area light takes `3 px^2` texels of 4 bytes if it is
 //! one-sided, and `6 px^2` otherwise.
 //!
 //! # Where it fails
@@ -139,7 +161,9 @@ pub(crate) struct ShadowMaps {
     capacity: usize,
     /// The faces of all maps, ascending.
     drawn: Vec<u32>,
+    /// Those of flat faces, and of paraboloids if there are any.
     pipelines: RasterPipelines,
+    curved: Option<RasterPipelines>,
     views: Views,
     bound: BoundMaps,
     /// The trees of rectangles, if frames subdivide them.
@@ -191,13 +215,14 @@ impl ShadowMaps {
         let sun_maps = gpu.uniform("maps of suns", size_of::<SunMapsRecord>() as u64);
         gpu.queue.write_buffer(&sun_maps, 0, bytemuck::bytes_of(&plan.suns));
         let (views, layout) = Views::new(gpu, &plan.faces)?;
-        let pipelines = RasterPipelines::new(
-            gpu,
-            &layout,
-            scene,
-            Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
-            RasterPass::ShadowMap { slopes: plan.slopes },
-        )?;
+        let orientation =
+            Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 };
+        let pipelines_of = |is_curved| {
+            let pass = RasterPass::ShadowMap { slopes: plan.slopes, is_curved };
+            RasterPipelines::new(gpu, &layout, scene, orientation, pass)
+        };
+        let pipelines = pipelines_of(false)?;
+        let curved = model.is_curved().then(|| pipelines_of(true)).transpose()?;
         let subdivided = plan.sites.len() as u32 * plan.maps;
         let mut maps = Self {
             fixed_maps: figures.maps - subdivided,
@@ -207,6 +232,7 @@ impl ShadowMaps {
             capacity: plan.faces.len(),
             faces: plan.faces,
             pipelines,
+            curved,
             views,
             bound: BoundMaps::new(model, ranges, atlas, records, (asked.sunny.suns, sun_maps)),
             adaptive,

@@ -27,7 +27,8 @@ impl ShadowMaps {
             return Err(AssignError::Unsupported {
                 strategy: format!("shadow model {model}"),
                 asked: "lights that move".into(),
-                reason: "its trees settle in frames with the same lights: maps:N,PX serves them".into(),
+                reason: "its trees settle in frames with the same lights: maps:N,PX serves them"
+                    .into(),
             }
             .into());
         }

@@ -96,8 +96,9 @@ fn fixed_count(maps: u32) -> u32 {
 }
 
 /// Squares of the atlas that all lights take.
-fn squares(lights: &[Light], maps: u32) -> u64 {
-    lights.iter().map(|light| maps_of(light, maps) * Reach::of_light(light).squares()).sum()
+fn squares(lights: &[Light], maps: u32, are_curved: bool) -> u64 {
+    let of_light = |light| maps_of(light, maps) * Reach::of_light(light).squares(are_curved);
+    lights.iter().map(of_light).sum()
 }
 
 impl Plan {
@@ -124,7 +125,9 @@ impl Plan {
                     accepted: "a model with maps".into(),
                 });
             }
-            ShadowModel::Maps { maps, .. } | ShadowModel::Pcss { maps, .. } => {
+            ShadowModel::Maps { maps, .. }
+            | ShadowModel::Pcss { maps, .. }
+            | ShadowModel::Paraboloids { maps, .. } => {
                 MAP_COUNTS.into_iter().rev().filter(|count| *count <= maps).collect()
             }
             ShadowModel::Adaptive { most, .. } => (FEWEST_ADAPTIVE..=most).rev().collect(),
@@ -132,7 +135,8 @@ impl Plan {
         let columns_most = most_px / px;
         let most = u64::from(columns_most).pow(2);
         let fewest = counts.last().copied().unwrap_or(1);
-        let squares = |maps: u32| squares(lights, maps) + u64::from(sunny.squares());
+        let are_curved = model.is_curved();
+        let squares = |maps: u32| squares(lights, maps, are_curved) + u64::from(sunny.squares());
         let fits = |maps: u32| squares(maps) <= most;
         let maps = counts.into_iter().filter(|_| fits(fewest)).find(|maps| fits(*maps));
         let Some(maps) = maps else {
@@ -159,7 +163,7 @@ impl Plan {
         (maps, columns): (u32, u32),
     ) -> Self {
         let (px, taps) = (model.px(), model.taps());
-        let total = (squares(lights, maps) as u32 + sunny.squares()).max(1);
+        let total = (squares(lights, maps, model.is_curved()) as u32 + sunny.squares()).max(1);
         let guard = GUARD_PX * taps.isqrt();
         let (sun_faces, suns) = sunny.maps(columns, px, (guard, taps.isqrt()));
         let size = [columns * px, total.div_ceil(columns) * px];
@@ -169,6 +173,7 @@ impl Plan {
             texel: 2.0 / f64::from(px - 2 * guard),
             taps: f64::from(taps.isqrt()),
             soft_taps: model.look_ups() / 2,
+            are_curved: model.is_curved(),
             squares: sunny.squares(),
             faces: sun_faces,
             maps: Vec::new(),
@@ -186,7 +191,7 @@ impl Plan {
                     light: ix,
                     first_map: first + planner.maps.len(),
                     first_face: planner.faces.len(),
-                    face_count: reach.face_count(),
+                    face_count: reach.face_count(false),
                     turned: turned(axes_of(light)),
                 });
                 // Any point of the rectangle may take a place, so each reaches as far as a corner does.
@@ -223,6 +228,8 @@ struct Planner {
     taps: f64,
     /// Look-ups of a soft filter; 0 without one.
     soft_taps: u32,
+    /// Whether faces are paraboloids, where they are no cones.
+    are_curved: bool,
     /// Squares that are taken.
     squares: u32,
     faces: Vec<Face>,
@@ -277,9 +284,13 @@ impl Planner {
     ) -> [u32; FACES] {
         let px = self.px;
         let mut places = [0; FACES];
-        let turned = turned(axes).into_iter().take(reach.face_count());
+        let is_curved = self.are_curved && !matches!(reach, Reach::Cone(_));
+        let all = turned(axes);
+        // The second paraboloid looks backwards.
+        let turned = if is_curved { vec![all[0], all[FACES - 1]] } else { all.to_vec() };
+        let turned = turned.into_iter().take(reach.face_count(is_curved));
         for (ix, (right, down, forward)) in turned.enumerate() {
-            let is_half = reach == Reach::Half && ix > 0;
+            let is_half = !is_curved && reach == Reach::Half && ix > 0;
             // The second of two halves lies below the first.
             let below = is_half && ix % 2 == 0;
             let square = if below { self.squares - 1 } else { self.squares };
@@ -296,6 +307,7 @@ impl Planner {
                 size: [px, if is_half { px / 2 } else { px }],
                 eye,
                 reach_m: (reach_m * beyond(texel, self.taps)) as f32,
+                is_curved,
             });
             places[ix] = origin[0] | origin[1] << 16;
         }

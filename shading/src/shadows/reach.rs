@@ -36,9 +36,11 @@ impl Reach {
         }
     }
 
-    /// Faces of a map.
-    pub(super) fn face_count(self) -> usize {
+    /// Faces of a map: paraboloids, or faces of a cube.
+    pub(super) fn face_count(self, are_curved: bool) -> usize {
         match self {
+            Self::Half if are_curved => 1,
+            Self::All if are_curved => 2,
             Self::Cone(_) => 1,
             Self::Half => FACES - 1,
             Self::All => FACES,
@@ -46,8 +48,9 @@ impl Reach {
     }
 
     /// Squares of the atlas that a map takes. Two halves share one.
-    pub(super) fn squares(self) -> u64 {
+    pub(super) fn squares(self, are_curved: bool) -> u64 {
         match self {
+            Self::Half | Self::All if are_curved => self.face_count(true) as u64,
             Self::Cone(_) => 1,
             Self::Half => 3,
             Self::All => FACES as u64,

@@ -23,7 +23,9 @@ impl Sight {
         let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
         let eye = face.eye.as_dvec3();
         let reach_m = f64::from(face.reach_m) * f64::from(ranges.max(1.0));
-        Self { planes: [w + x, w - x, w + y, w - y, w], eye, reach_m }
+        // A paraboloid sees half the space, and what reaches into it.
+        let planes = if face.is_curved { [DVec4::W; 5] } else { [w + x, w - x, w + y, w - y, w] };
+        Self { planes, eye, reach_m }
     }
 
     /// Whether a box may be seen, world space.

@@ -26,8 +26,8 @@ use glam::{DVec3, Mat4, Vec3, Vec4};
 use super::face::{Face, across, world_to_view};
 
 /// The share of a map's depth by which what it shows may lie in front of the surface, because the rasteriser rounds: a
-/// millimetre in 16 metres.
-const SLACK: f32 = 1.0 / (1 << 14) as f32;
+/// millimetre in 4 metres. It is no more than a texel of the largest map.
+const SLACK: f32 = 1.0 / (1 << 12) as f32;
 
 /// `sun_shadow.wesl`, `struct SunMap`. 64 bytes.
 #[repr(C)]
@@ -108,6 +108,7 @@ impl SunnyScene {
                 size: [px, px],
                 eye: middle.as_vec3(),
                 reach_m: f32::INFINITY,
+                is_curved: false,
             };
             let row = |axis: DVec3, from: DVec3, scale: f64| {
                 (axis * scale).extend(-axis.dot(from) * scale).as_vec4().to_array()

@@ -40,6 +40,12 @@ fn lighting_with_shadows_reads_the_maps() {
         let used = link(root, &Flags::from(flags), Some(LOOK_UPS[0])).used(2);
         assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root} {flags:?}: {used:?}");
     }
+    for flags in [&["to_paraboloid"][..], &["to_paraboloid", "mask", "base_color_texture"]] {
+        let linked = link("package::geometry", &flags.iter().copied().collect(), None);
+        assert!(linked.entry_points.contains("fragment_paraboloid"), "{flags:?}");
+    }
+    let curved = Flags::from(["areas", "area_point", "shadows", "paraboloids"]);
+    assert!(link("package::deferred", &curved, Some(LOOK_UPS[0])).used(2).contains(&MAPS[0]));
     // Suns have maps of their own, in lights' shadows only.
     let sunny = link("package::deferred", &Flags::from(["suns", "shadows"]), Some(LOOK_UPS[0]));
     assert!([10, 26, 27, 30].iter().all(|binding| sunny.used(2).contains(binding)));

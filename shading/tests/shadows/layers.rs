@@ -1,8 +1,7 @@
 //! Shadows on glass, in fog and on particles.
 
 use assign::{
-    Assignment, Bounds, CullSettings, Everything, Light, LightBuffer, LightSource, View,
-    fall_off,
+    Assignment, Bounds, CullSettings, Everything, Light, LightBuffer, LightSource, View, fall_off,
 };
 use assign_clustered::{Clustered, Occupancy};
 use glam::{DVec3, Vec3};
@@ -105,7 +104,8 @@ fn ray(view: &View, pixel: usize) -> (DVec3, DVec3) {
         1.0 - 2.0 * (f64::from(y) + 0.5) / f64::from(height),
     ];
     let clip = view.view_to_clip();
-    let local = DVec3::new(ndc[0] / f64::from(clip.x_axis.x), ndc[1] / f64::from(clip.y_axis.y), -1.0);
+    let local =
+        DVec3::new(ndc[0] / f64::from(clip.x_axis.x), ndc[1] / f64::from(clip.y_axis.y), -1.0);
     let to_world = view.world_to_view.inverse().as_dmat4();
     (view.eye().as_dvec3(), to_world.transform_vector3(local).normalize())
 }
@@ -142,7 +142,8 @@ fn fog_is_dark_where_exact_rays_are_blocked() {
                         || traced
                             .distance_m(place, offset / distance)
                             .is_none_or(|hit| hit >= distance);
-                    let arrives = if is_free { fall_off(distance * distance, 9.0, 1e-4) } else { 0.0 };
+                    let arrives =
+                        if is_free { fall_off(distance * distance, 9.0, 1e-4) } else { 0.0 };
                     20.0 * arrives / (4.0 * std::f64::consts::PI)
                         * (-f64::from(density) * at(i)).exp()
                 })
@@ -224,9 +225,16 @@ fn layers_with_shadows_differ_in_no_bit_between_strategies() {
             let snapshot = strategy.lists().snapshot(&gpu).unwrap();
             let bvh = LightBvh::new(lights.lights());
             let mut entries = 0;
-            visit_layer_lists(&renderer, &strategy, &frame, &snapshot, &samples, &mut |some, lists| {
-                entries += bvh.check(some, lists, false).listed;
-            })
+            visit_layer_lists(
+                &renderer,
+                &strategy,
+                &frame,
+                &snapshot,
+                &samples,
+                &mut |some, lists| {
+                    entries += bvh.check(some, lists, false).listed;
+                },
+            )
             .unwrap();
             listed.push(entries);
         }

@@ -10,6 +10,7 @@ mod errors;
 mod layers;
 mod moved;
 mod occlusion;
+mod paraboloids;
 mod pcss;
 mod strategies;
 mod suns;

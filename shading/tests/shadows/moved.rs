@@ -154,9 +154,8 @@ fn maps_that_were_not_drawn_again_are_refused() {
     let occlusion = CullSettings { occlusion: Some(OCCLUSION_TEST), ..CullSettings::default() };
     let mut plain = Method::new(&renderer, Box::new(Everything::new(&gpu).unwrap()), options);
     let mut hiding = Method::new(&renderer, clusters(&gpu, occlusion), options);
-    let is_stale = |drawn: Result<HdrImage, ShadingError>| {
-        matches!(drawn, Err(ShadingError::StaleShadows))
-    };
+    let is_stale =
+        |drawn: Result<HdrImage, ShadingError>| matches!(drawn, Err(ShadingError::StaleShadows));
     assert!(plain.draw_with_old_maps(&renderer, &view, &first, encoder(&gpu)).is_ok());
     assert!(hiding.draw_with_old_maps(&renderer, &view, &first, encoder(&gpu)).is_ok());
     renderer.move_shadows(&second).unwrap();

@@ -33,7 +33,13 @@ fn suns(directions: &[Vec3]) -> Suns {
 }
 
 /// The renderer of a scene whose suns and lights have maps.
-fn cast(gpu: &Gpu, scene: &Scene, lights: &LightBuffer, suns: Suns, model: ShadowModel) -> Renderer {
+fn cast(
+    gpu: &Gpu,
+    scene: &Scene,
+    lights: &LightBuffer,
+    suns: Suns,
+    model: ShadowModel,
+) -> Renderer {
     let mut renderer = Renderer::new(gpu, scene, &view()).unwrap();
     renderer.cast_shadows_of_suns(suns);
     renderer.cast_shadows(lights, model).unwrap();
@@ -85,7 +91,7 @@ fn images(
 #[test]
 fn shadows_of_suns_are_exact_up_to_the_texel() {
     let scene = bounded(plates(), 5.0);
-    let suns = suns(&[Vec3::new(0.4, -1.0, -0.5), Vec3::new(-1.0, -0.6, -0.3)]);
+    let suns = suns(&[Vec3::new(0.1, -1.0, 0.2), Vec3::new(-0.6, -0.5, -0.3)]);
     let models = [ShadowModel::None, maps(1, 256, 1), maps(1, 2048, 1), maps(1, 1024, 9)];
     let (images, gbuffer) = images(&scene, &view(), suns, &models);
     let traced = TracedScene::new(&scene);
@@ -94,9 +100,9 @@ fn shadows_of_suns_are_exact_up_to_the_texel() {
     let truth = truth_image(&traced, &[], [96, 64], sample_of, settings, &|_, _| ()).radiance;
     let errors: Vec<f64> = images.iter().map(|image| off(image, &truth)).collect();
     println!("{models:?}: {errors:.4?}");
-    assert!(errors[0] > 0.05, "without shadows: {errors:?}");
-    assert!(errors[1] < 0.5 * errors[0] && errors[2] < 0.06 * errors[0], "{errors:?}");
-    assert!(errors[3] < 0.2 * errors[0], "{errors:?}");
+    assert!(errors[0] > 0.02, "without shadows: {errors:?}");
+    assert!(errors[1] < 0.3 * errors[0] && errors[2] < 0.05 * errors[0], "{errors:?}");
+    assert!(errors[3] < 0.25 * errors[0], "{errors:?}");
 }
 
 /// An open court has no false shadows, whatever the slope, the texel and the filter, and a wall of 10 cm has no leak.
@@ -108,19 +114,15 @@ fn suns_shadow_no_surface_by_itself_and_pass_no_wall() {
     let scene = |quads: &[[Vec3; 3]]| {
         bounded(scene_of(quads, Material { double_sided: true, ..grey(0.5) }, vec![]), 4.0)
     };
-    let at = View::look_at(Vec3::new(2.6, 1.6, 2.8), Vec3::new(-1.0, 0.6, -1.0), 1.2, 0.05, [96, 64]);
+    let at =
+        View::look_at(Vec3::new(2.6, 1.6, 2.8), Vec3::new(-1.0, 0.6, -1.0), 1.2, 0.05, [96, 64]);
     let slopes = suns(&[
         Vec3::new(-0.3, -0.5, -0.4),
         Vec3::new(-1.0, -0.02, -0.3),
         Vec3::new(-0.05, -1.0, -0.9),
     ]);
-    let models = [
-        ShadowModel::None,
-        maps(1, 32, 1),
-        maps(1, 64, 25),
-        maps(1, 256, 4),
-        maps(1, 2048, 1),
-    ];
+    let models =
+        [ShadowModel::None, maps(1, 32, 1), maps(1, 64, 25), maps(1, 256, 4), maps(1, 2048, 1)];
     let (open, _) = images(&scene(&quads), &at, slopes, &models);
     assert!(open[0].pixels.iter().flatten().sum::<f32>() > 1.0);
     for (image, model) in open.iter().zip(models) {
@@ -141,7 +143,7 @@ fn suns_shadow_no_surface_by_itself_and_pass_no_wall() {
 fn all_methods_show_the_same_shadows_of_suns() {
     let gpu = common::gpu();
     let scene = bounded(plates(), 5.0);
-    let suns = suns(&[Vec3::new(0.4, -1.0, -0.5), Vec3::new(-1.0, -0.6, -0.3)]);
+    let suns = suns(&[Vec3::new(0.1, -1.0, 0.2), Vec3::new(-0.6, -0.5, -0.3)]);
     let lights = [
         Light::point(Vec3::new(0.5, 2.0, 0.0), 6.0, Vec3::ONE),
         Light::point(Vec3::new(-1.5, 1.0, 0.5), 2.0, Vec3::ONE),
@@ -172,7 +174,7 @@ fn all_methods_show_the_same_shadows_of_suns() {
         let plain = LightingOptions { shadows: ShadowModel::None, ..shadowed };
         let plain = draw(&renderer, &view, &lights, &mut everything, plain);
         let changed = plain.difference(&none).unwrap().differing_channels;
-        assert!(changed > 2_000, "shadows change {changed} channels");
+        assert!(changed > 1_000, "shadows change {changed} channels");
         if fog_per_m.is_some() {
             continue;
         }

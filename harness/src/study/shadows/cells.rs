@@ -29,7 +29,10 @@ pub(crate) fn maps(record: &Record) -> Option<Maps> {
         ShadowModel::Maps { px, taps, .. } => {
             Some(Maps { maps: setting.maps_per_area_light, px, taps })
         }
-        ShadowModel::None | ShadowModel::Adaptive { .. } | ShadowModel::Pcss { .. } => None,
+        ShadowModel::None
+        | ShadowModel::Adaptive { .. }
+        | ShadowModel::Pcss { .. }
+        | ShadowModel::Paraboloids { .. } => None,
     }
 }
 

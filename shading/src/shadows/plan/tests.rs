@@ -31,7 +31,8 @@ fn lights() -> Vec<Light> {
 #[test]
 fn faces_lie_in_the_atlas_and_share_no_texel() {
     for (maps, px, taps) in [(1, 32, 25), (4, 64, 1), (25, 32, 9)] {
-        let plan = Plan::new(&lights(), SunnyScene::default(), model(maps, px, taps), 4096).unwrap();
+        let plan =
+            Plan::new(&lights(), SunnyScene::default(), model(maps, px, taps), 4096).unwrap();
         assert_eq!(plan.maps, maps);
         assert_eq!(plan.map_count, 2 * maps + 4);
         // 5 and 6 faces of the area lights, 1, 5 and 6 of the spots, 5 of the virtual point light.
@@ -67,8 +68,14 @@ fn seen(face: &Face, point: Vec3) -> Option<(f32, f32, f32)> {
 
 #[test]
 fn the_faces_of_a_map_see_every_point_that_the_light_reaches() {
-    let plan = Plan::new(&[square(Vec3::Y * 3.0)], SunnyScene::default(), model(1, 64, 1), 4096).unwrap();
-    let point = Plan::new(&[Light::point(Vec3::ONE, 8.0, Vec3::ONE)], SunnyScene::default(), model(1, 64, 1), 4096);
+    let plan =
+        Plan::new(&[square(Vec3::Y * 3.0)], SunnyScene::default(), model(1, 64, 1), 4096).unwrap();
+    let point = Plan::new(
+        &[Light::point(Vec3::ONE, 8.0, Vec3::ONE)],
+        SunnyScene::default(),
+        model(1, 64, 1),
+        4096,
+    );
     let point = point.unwrap();
     for ix in 0..2000 {
         let f = ix as f32;
@@ -104,7 +111,8 @@ fn an_atlas_that_is_too_small_gets_fewer_maps_or_is_refused() {
     let whole = Plan::new(&lights, SunnyScene::default(), model(81, 64, 1), 2048).unwrap();
     assert_eq!(whole.maps, 81);
     // 12 squares do not fit 3 x 3.
-    let error = Plan::new(&lights, SunnyScene::default(), model(4, 64, 1), 192).unwrap_err().to_string();
+    let error =
+        Plan::new(&lights, SunnyScene::default(), model(4, 64, 1), 192).unwrap_err().to_string();
     assert!(
         error.starts_with("shadow model is maps:4,64 for 4 lights: it must be one whose maps fit"),
         "{error}"
