@@ -70,8 +70,9 @@ fn paraboloids_are_right_where_triangles_are_small() {
         let (fine, coarse) = (errors_of(40), errors_of(1));
         println!("{name}: none, cube, paraboloid: {fine:.4?}; large triangles: {coarse:.4?}");
         assert!(fine[2] < 0.25 * fine[0] && fine[1] < 0.25 * fine[0], "{name}: {fine:?}");
-        if !matches!(light.shape, LightShape::Spot { outer_angle, .. } if outer_angle < 1.0) {
-            assert!(coarse[2] > 2.0 * fine[2], "{name}: {coarse:?}");
+        // The other lights look straight down, where the floor's edges bend least.
+        if matches!(light.shape, LightShape::Point) {
+            assert!(coarse[2] > 5.0 * fine[2], "{name}: {coarse:?}");
         }
     }
 }
