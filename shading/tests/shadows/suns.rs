@@ -19,7 +19,7 @@ use crate::{
     },
     maps, off,
     truth::{plates, view},
-    walls::walls_of,
+    walls::{boxes, dark_among_lit, view_of_boxes, walls_of},
 };
 
 fn bounded(scene: Scene, half: f32) -> Scene {
@@ -136,6 +136,30 @@ fn suns_shadow_no_surface_by_itself_and_pass_no_wall() {
     let lit = |ix: usize| dark[ix].pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
     assert!(lit(0) > 1_000, "without shadows: {}", lit(0));
     assert_eq!(lit(1), 0, "light leaks into a closed box");
+}
+
+/// Edges of boxes and of a column have no dark seams.
+#[test]
+fn suns_leave_no_dark_seams_at_edges() {
+    let floor = [Vec3::ZERO, Vec3::Z * 3.0, Vec3::X * 3.0];
+    let quads = [vec![floor], boxes()].concat();
+    let scene =
+        bounded(scene_of(&quads, Material { double_sided: true, ..grey(0.5) }, vec![]), 3.0);
+    let size = [192, 128];
+    let models = [maps(1, 64, 1), maps(1, 256, 1), maps(1, 256, 25), maps(1, 1024, 1)];
+    for direction in [Vec3::new(-0.5, -0.8, -0.6), Vec3::new(0.7, -0.3, -0.5)] {
+        let suns = suns(&[direction]);
+        let (images, gbuffer) = images(&scene, &view_of_boxes(size), suns, &models);
+        let traced = TracedScene::new(&scene);
+        let settings = TruthSettings { suns, ..TruthSettings::new(Transport::Direct) };
+        let sample_of = |pixel| gbuffer.sample(pixel, &traced);
+        let truth = truth_image(&traced, &[], size, sample_of, settings, &|_, _| ()).radiance;
+        for (image, model) in images.iter().zip(models) {
+            let [open, dark] = dark_among_lit(image, &truth, size);
+            println!("{model}, {direction}: {dark} of {open} pixels");
+            assert!(open > 3_000 && dark <= 3, "{model}, {direction}: {dark} of {open} pixels");
+        }
+    }
 }
 
 /// Suns and lights together, on surfaces and in fog, in clusters, without culling and in light volumes.
