@@ -1,5 +1,7 @@
 //! What lighting reads of shadow maps: the atlas, and the records of lights and maps.
 
+use std::sync::Arc;
+
 use assign::{Suns, entry, storage_entry, texture, texture_entry, uniform_entry};
 
 use crate::ShadowModel;
@@ -19,7 +21,7 @@ pub(crate) struct BoundMaps {
     atlas: wgpu::TextureView,
     records: wgpu::Buffer,
     /// The suns that have maps, and these.
-    suns: (Suns, wgpu::Buffer),
+    suns: Arc<(Suns, wgpu::Buffer)>,
 }
 
 impl BoundMaps {
@@ -30,7 +32,7 @@ impl BoundMaps {
         records: wgpu::Buffer,
         suns: (Suns, wgpu::Buffer),
     ) -> Self {
-        Self { model, ranges, atlas, records, suns }
+        Self { model, ranges, atlas, records, suns: Arc::new(suns) }
     }
 
     /// The suns that have maps.
