@@ -318,14 +318,7 @@ mod tests {
 
     #[test]
     fn shadows_are_refused_where_there_are_no_maps() {
-        for option in [
-            "--fog 0.1",
-            "--particles 9",
-            "--motion drift",
-            "--vpls 64",
-            "--light-order gpu",
-            "--unbounded",
-        ] {
+        for option in ["--motion drift", "--vpls 64", "--light-order gpu", "--unbounded"] {
             let line = format!("--shadows maps:4,64 {option}");
             let error = check(&line).expect_err(option).to_string();
             let name = option.split(' ').next().expect("a name");
@@ -336,6 +329,10 @@ mod tests {
             assert_eq!(check(&format!("--shadows none {option}")), Ok(()), "{option}");
         }
         assert_eq!(check("--shadows maps:4,64 --path --areas 0.5"), Ok(()));
+        for layers in ["--fog 0.1", "--particles 9", "--transparent"] {
+            assert_eq!(check(&format!("--shadows maps:4,64 {layers}")), Ok(()), "{layers}");
+        }
+        assert_eq!(check("--shadows maps:4,64 --motion drift --light-order given"), Ok(()));
         for option in ["--path", "--msaa 4 --mode forward --truth none", "--motion drift"] {
             let error = check(&format!("--shadows adaptive:64,4,25 {option}")).expect_err(option);
             let name = option.split(' ').next().expect("a name");

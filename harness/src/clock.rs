@@ -48,11 +48,13 @@ impl FrameTimes {
         Self { passes, intervals }
     }
 
-    /// Puts work of the CPU before the first pass. It counts as a pass, and in spans.
+    /// Puts work of the CPU before the first pass, and before other work of the CPU that it was called for. It counts as a
+    /// pass, and in spans.
     pub fn begin_with(&mut self, name: &str, ms: f64) {
         self.passes.insert(0, (name.to_owned(), ms));
         if let Some(intervals) = &mut self.intervals {
-            intervals.insert(0, (name.to_owned(), [-ms, 0.0]));
+            let end = intervals.iter().map(|(_, [begin, _])| *begin).fold(0.0, f64::min);
+            intervals.insert(0, (name.to_owned(), [end - ms, end]));
         }
     }
 

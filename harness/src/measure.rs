@@ -24,6 +24,7 @@ use crate::{
     pass_samples::PassSamples,
     results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
+    shadows::PLAN_PASS,
     stage::Stage,
     strategy::Method,
 };
@@ -244,6 +245,9 @@ impl<'a> Contest<'a> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
         let mut times = self.clock.finish_frame()?;
+        if let Some(plan_ms) = stage.shadow_plan_ms {
+            times.begin_with(PLAN_PASS, plan_ms);
+        }
         if let Some(upload) = stage.moving.as_ref().and_then(Moving::upload) {
             times.begin_with("upload", upload.ms);
         }

@@ -196,6 +196,14 @@ impl Moving {
         Some(format!("{words} became faulty in some frame of the motion, and lit nothing there"))
     }
 
+    /// The lights at rest, all of which frames may light; `None` if only the GPU knows the moved ones.
+    pub fn resting(&self) -> Option<&[Light]> {
+        match &self.mover {
+            Mover::Cpu { rest, .. } => Some(rest),
+            Mover::Gpu(_) => None,
+        }
+    }
+
     /// The motion as results name it.
     pub fn setting(&self) -> MotionSetting {
         let (law, speed) = match &self.law {

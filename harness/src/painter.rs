@@ -103,7 +103,7 @@ impl<'a> Painter<'a> {
         Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
     }
 
-    /// Records one frame: the lights, geometry, the strategy's passes, lighting. It submits nothing, except to
+    /// Records one frame: the shadow maps of lights that move, the lights, geometry, the strategy's passes, lighting. It submits nothing, except to
     /// order lights off the clock that no frame makes.
     pub fn record(
         &mut self,
@@ -112,15 +112,25 @@ impl<'a> Painter<'a> {
         mode: Mode,
         passes: &mut dyn Passes,
     ) -> Result<(), HarnessError> {
+        let moves = stage.moving.is_some();
         let Stage { renderer, view, lights, bounce, .. } = stage;
         match self {
             Self::Lists { strategy, lighting, .. } => {
+                if moves {
+                    renderer.record_shadow_maps(passes);
+                }
+                if moves && strategy.needs().occluders {
+                    renderer.record_occluders(passes);
+                }
                 record_lights(gpu, lights, bounce, strategy.needs().hierarchy, passes)?;
                 let frame = renderer.frame(view, lights);
                 record_before_lighting(renderer, mode, *strategy, &frame, passes);
                 lighting.record(renderer, view, *strategy, passes)?;
             }
             Self::RasterSphere(spheres) => {
+                if moves {
+                    renderer.record_shadow_maps(passes);
+                }
                 record_lights(gpu, lights, bounce, false, passes)?;
                 renderer.record_depth(view, passes);
                 match mode {

@@ -1,5 +1,8 @@
 //! The shadow maps of a stage, or the rays in place of them.
 
+use std::time::Instant;
+
+use assign::LightBuffer;
 use assign_cdi::Storage;
 use shading::{Cut, LightingOptions, OccluderDepth, ShadowFigures, ShadowModel};
 
@@ -10,6 +13,7 @@ use crate::{
     deep::DeepChoice,
     error::HarnessError,
     messages::say,
+    moving::Moving,
     results::{AdaptiveSetting, DeepImages, ShadowSetting, median},
     stage::Stage,
 };
@@ -29,46 +33,50 @@ pub struct Casting<'a> {
 }
 
 impl Stage {
-    /// Makes shadow maps for its lights and draws them before all frames: lights and scene stand still. With an
-    /// adaptive model, it draws the view until the maps have settled, so that all methods get the same maps. With rays, it
-    /// builds deep images instead. If asked to, it also finds what hides lights from groups, for strategies with `/occ`.
-    /// Returns a warning if area lights got fewer maps than asked for, and if rays meet alpha masks.
+    /// Makes shadow maps for its lights and draws them before all frames. If lights move, each frame draws the maps again
+    /// ([`Painter`](crate::painter::Painter)), and the atlas has room for the lights of all frames. With an adaptive model, it
+    /// draws the view until the maps have settled, so that all methods get the same maps. With rays, it builds deep images
+    /// instead. If asked to, it also finds what hides lights from groups, for strategies with `/occ`. Returns warnings: if
+    /// area lights got fewer maps than asked for, if the model is wrong for large triangles, and if rays meet alpha masks.
     ///
     /// # Errors
     ///
-    /// [`CliError`] in a scene with suns, and the errors of
-    /// [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
+    /// Those of [`Renderer::cast_shadows`](shading::Renderer::cast_shadows) and
     /// [`Renderer::settle_shadows`](shading::Renderer::settle_shadows).
     pub fn cast_shadows(
         &mut self,
         model: ShadowModel,
         Casting { cut, finds_occluders, images }: Casting<'_>,
-    ) -> Result<Option<String>, HarnessError> {
+    ) -> Result<Vec<String>, HarnessError> {
         let specular_reach = self.specular_reach;
         let lit = LightingOptions { cut, specular_reach, ..LightingOptions::default() };
         self.renderer.cast_shadows_within(lit.ranges_lit());
         self.shadows = ShadowModel::None;
-        if model.is_on() && !self.suns.is_empty() {
-            let accepted = "none in a scene with suns, which have no shadow maps";
+        if model.casts_rays() && !self.suns.is_empty() {
+            let accepted = "none or one with maps in a scene with suns, to which no rays are cast";
             return Err(CliError::out_of_range("--shadows", &model.to_string(), accepted).into());
         }
-        (self.shadow_draw_ms, self.shadow_rounds, self.shadow_images) = (None, None, None);
+        self.renderer.cast_shadows_of_suns(self.suns);
+        (self.shadow_draw_ms, self.shadow_plan_ms) = (None, None);
+        (self.shadow_rounds, self.shadow_images) = (None, None);
         let images = images.map(DeepChoice::of_shadows).filter(|_| model.casts_rays());
         if let Some(images) = images {
             let triangles = self.vpl_maker.triangles(&self.gpu, &self.scene)?;
             self.renderer.cast_rays_through(triangles, images.settings()?);
         }
-        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(None) };
+        let Some(figures) = self.draw_maps(model, finds_occluders)? else { return Ok(Vec::new()) };
+        let mut warnings = Vec::new();
         self.shadows = model;
         if let (Some(choice), Some(images)) = (images, self.renderer.shadow_images()) {
-            return Ok(self.tell_images(figures, choice.figures(images)));
+            return Ok(self.tell_images(figures, choice.figures(images)).into_iter().collect());
         }
         let [width, height] = figures.atlas_px;
         say(format!(
-            "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn once in {:.1} ms",
+            "shadows  {} maps with {} faces in an atlas of {width}x{height} texels ({} MiB), drawn {} in {:.1} ms",
             figures.maps,
             figures.faces,
             figures.atlas_bytes().div_ceil(1 << 20),
+            if self.moving.is_some() { "in every frame, now" } else { "once" },
             self.shadow_draw_ms.unwrap_or_default()
         ));
         if let Some(adaptive) = self.adaptive_setting() {
@@ -83,16 +91,45 @@ impl Stage {
                 adaptive.banding_ms.unwrap_or_default()
             ));
         }
-        let warning = figures.fell_back().then(|| {
+        if model.is_curved() {
+            let warning = format!(
+                "--shadows {model}: paraboloids bend the edges of triangles. Shadows are wrong where triangles are \
+                 large beside their distance from a light"
+            );
+            say(format!("warning  {warning}"));
+            warnings.push(warning);
+        }
+        if figures.fell_back() {
             let only = if model.is_adaptive() { "at most" } else { "only" };
             let warning = format!(
                 "--shadows {model}: {only} {} maps for each area light fit an atlas of this device",
                 figures.maps_per_area_light
             );
             say(format!("warning  {warning}"));
-            warning
-        });
-        Ok(warning)
+            warnings.push(warning);
+        }
+        Ok(warnings)
+    }
+
+    /// Has the maps look from where lights are that have moved, and times that: wall clock, until the GPU has it.
+    pub(crate) fn move_shadows(&mut self) -> Result<(), HarnessError> {
+        if !self.shadows.is_on() {
+            return Ok(());
+        }
+        let began = Instant::now();
+        self.renderer.move_shadows(&self.lights)?;
+        // The copies run with the next submission.
+        self.gpu.queue.submit([]);
+        self.gpu.wait()?;
+        self.shadow_plan_ms = Some(began.elapsed().as_secs_f64() * 1e3);
+        Ok(())
+    }
+
+    /// The lights for which the atlas has room: those of all frames, if they move.
+    fn lights_of_all_frames(&self) -> Result<Option<LightBuffer>, HarnessError> {
+        let resting = self.moving.as_ref().and_then(Moving::resting);
+        let order = self.lights.order();
+        Ok(resting.map(|all| LightBuffer::ordered(&self.gpu, all, order)).transpose()?)
     }
 
     /// Says what rays cross, and keeps it. Returns a warning if the scene has alpha masks.
@@ -130,7 +167,13 @@ impl Stage {
             return Ok(self.renderer.cast_shadows(&self.lights, model)?);
         }
         let mut clock = PassClock::new(&self.gpu);
-        self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        if let Some(all) = self.lights_of_all_frames()? {
+            self.renderer.cast_shadows(&all, model)?;
+            self.renderer.move_shadows(&self.lights)?;
+            self.renderer.record_shadow_maps(&mut clock);
+        } else {
+            self.renderer.cast_shadows_in(&self.lights, model, &mut clock)?;
+        }
         if finds_occluders {
             self.renderer.find_occluders_in(OccluderDepth::Farthest, &mut clock)?;
         }
@@ -146,6 +189,7 @@ impl Stage {
         if model.is_adaptive() || !self.gpu.is_software() {
             for _ in 0..repeats {
                 self.renderer.record_shadow_maps(&mut clock);
+                self.renderer.record_occluders(&mut clock);
                 all_ms.push(ms(&mut clock)?);
             }
         } else {
@@ -196,12 +240,16 @@ impl Stage {
     }
 }
 
+/// The pass of the CPU that plans the maps of lights that move.
+pub(crate) const PLAN_PASS: &str = "shadow-plan";
+
 /// Refuses strategies that leave out hidden lights where no maps say which these are.
 pub(crate) fn check_occlusion(model: ShadowModel, choices: &[Choice]) -> Result<(), CliError> {
     let has_maps = matches!(model, ShadowModel::Maps { .. });
     let hides = choices.iter().find(|choice| choice.leaves_out_hidden() && !has_maps);
     hides.map_or(Ok(()), |choice| {
-        let accepted = "combined with --shadows maps:N,PX: only maps that stay say what hides lights from a group";
+        let accepted = "combined with --shadows maps:N,PX: only maps that stay, and of which a look-up reads a few texels, \
+                        say what hides lights from a group";
         Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted))
     })
 }
@@ -218,8 +266,22 @@ pub(crate) fn check_shadows(
         return Ok(());
     }
     let refuse = |accepted| Err(CliError::out_of_range("--shadows", &model.to_string(), accepted));
-    if *layers != LayerArgs::default() {
-        return refuse("none with --transparent, --particles and --fog, which maps do not shade");
+    if model.casts_rays() {
+        if stage.motion.motion.is_some() {
+            return refuse("none with --motion, or one with maps, which follow lights");
+        }
+        if stage.bounce.vpls > 0 {
+            return refuse("none with --vpls, or one with maps");
+        }
+        if *layers != LayerArgs::default() {
+            return refuse("none with --transparent, --particles and --fog, or one with maps");
+        }
+        let images = DeepChoice::of_shadows(&stage.bounce.deep);
+        let settings = images.settings().map_err(|error| CliError::new(error.to_string()))?;
+        if settings.storage == Storage::LinkedLists {
+            let accepted = "another build with --shadows cdi:N, whose rays search sorted lists";
+            return Err(CliError::out_of_range("--build", "linked-lists", accepted));
+        }
     }
     if model.is_adaptive() && is_path {
         return refuse("none or maps:N,PX with --path, because adaptive maps settle in one view");
@@ -227,22 +289,24 @@ pub(crate) fn check_shadows(
     if model.is_adaptive() && samples > 1 {
         return refuse("none or maps:N,PX with --msaa 4, because adaptive maps read a G-buffer");
     }
-    if stage.motion.motion.is_some() {
-        return refuse("none with --motion, because maps are drawn once, before the frames");
+    if model.is_adaptive() && stage.motion.motion.is_some() {
+        return refuse(
+            "none or maps:N,PX with --motion, because adaptive maps settle under still lights",
+        );
     }
-    if stage.bounce.vpls > 0 {
-        return refuse("none with --vpls, whose lights the CPU does not know");
+    if stage.motion.is_on_gpu() {
+        return refuse("none with --moved-by gpu, whose lights the CPU does not know");
+    }
+    if stage.bounce.vpls > 0 && stage.light_order().is_on_gpu() {
+        return refuse(
+            "none with --vpls, whose lights the CPU does not know (unless --light-order given, morton or bvh reads them back)",
+        );
     }
     if stage.light_order().is_on_gpu() {
-        return refuse("none with --light-order gpu, gpuN and gpuN%, which the CPU does not know");
-    }
-    if model.casts_rays() {
-        let images = DeepChoice::of_shadows(&stage.bounce.deep);
-        let settings = images.settings().map_err(|error| CliError::new(error.to_string()))?;
-        if settings.storage == Storage::LinkedLists {
-            let accepted = "another build with --shadows cdi:N, whose rays search sorted lists";
-            return Err(CliError::out_of_range("--build", "linked-lists", accepted));
-        }
+        return refuse(
+            "none with --light-order gpu, gpuN and gpuN%, which the CPU does not know (the default with --motion is \
+             gpu: give another one, such as --light-order given)",
+        );
     }
     Ok(())
 }

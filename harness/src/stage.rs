@@ -49,6 +49,8 @@ pub struct Stage {
     pub shadows: ShadowModel,
     /// The time that drawing the maps once takes, ms, if there are any.
     pub(crate) shadow_draw_ms: Option<f64>,
+    /// The time in which the CPU planned the maps of the last frame's lights, ms, if they move.
+    pub(crate) shadow_plan_ms: Option<f64>,
     /// With an adaptive model: frames until the maps had settled, and the time of the test for bands, ms.
     pub(crate) shadow_rounds: Option<(u32, Option<f64>)>,
     /// The deep images that rays of shadows cross, if there are any.
@@ -144,6 +146,7 @@ impl Stage {
             area_lod: None,
             shadows: ShadowModel::None,
             shadow_draw_ms: None,
+            shadow_plan_ms: None,
             shadow_rounds: None,
             shadow_images: None,
             vpls: None,
@@ -187,7 +190,10 @@ impl Stage {
     /// again if their order is old.
     fn move_lights(&mut self, frame: u32) -> Result<(), HarnessError> {
         match (&mut self.moving, &self.bounce) {
-            (Some(moving), _) => moving.go_to(&self.gpu, frame, &mut self.lights),
+            (Some(moving), _) => {
+                moving.go_to(&self.gpu, frame, &mut self.lights)?;
+                self.move_shadows()
+            }
             (None, Some(bounce)) => Ok(self.lights.update_from_gpu(&self.gpu, &bounce.lights())?),
             (None, None) => Ok(()),
         }

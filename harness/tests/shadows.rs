@@ -159,6 +159,29 @@ fn options_that_rays_do_not_take_are_refused() {
     }
 }
 
+/// Maps that follow lights: all methods show the same image in all frames, and the maps are on the bill of each frame.
+#[test]
+fn maps_follow_lights_that_move_on_the_clock() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let options = ["compare", "--strategies", "None,T-E,SC-E/occ", "--frames", "3"];
+    let stage = ["--scene", "atrium", "--size", "48x27", "--lights", "12", "--areas", "0.3"];
+    let moves = ["--spots", "0.3", "--radius-scale", "8", "--motion", "all", "--speed", "20"];
+    let order = ["--light-order", "given", "--warmup", "0", "--truth", "full", "--checks", "3"];
+    let drawn = ["--shadows", "maps:4,64", "--out", out];
+    run(&[&options[..], &stage, &moves, &order, &drawn].concat());
+    let records = Results::read(&folder.path().join("results.json")).expect("results").records;
+    assert_eq!(records.len(), 3);
+    for record in &records {
+        let id = &record.strategy;
+        assert_eq!(record.image.differing_channels, Some(0), "{id}");
+        assert_eq!(record.lists.missed_pairs.unwrap_or_default(), 0, "{id}");
+        let ms_of = |pass: &str| record.time_of(|name, _| name == pass);
+        assert!(ms_of("shadow-maps") > 0.0 && ms_of("shadow-plan") > 0.0, "{id}");
+        assert_eq!(ms_of("occluders") > 0.0, id.as_str().ends_with("/occ"), "{id}");
+    }
+}
+
 /// Strategies of all families that have the segment show the image of no culling with shorter lists, in the atrium with lights
 /// of all kinds.
 #[test]

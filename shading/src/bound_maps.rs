@@ -1,12 +1,17 @@
 //! What lighting reads of shadow maps: the atlas, and the records of lights and maps.
 
-use assign::{entry, storage_entry, texture, texture_entry};
+use std::sync::Arc;
+
+use assign::{Suns, entry, storage_entry, texture, texture_entry, uniform_entry};
 
 use crate::ShadowModel;
 
 /// Bindings of `shadow.wesl` in group 2.
 const ATLAS_BINDING: u32 = 26;
 pub(crate) const RECORDS_BINDING: u32 = 27;
+
+/// Binding of `sun_shadow.wesl` in group 2.
+const SUN_MAPS_BINDING: u32 = 30;
 
 /// Shadow maps as shaders read them. Clones share them.
 #[derive(Clone, Debug)]
@@ -15,6 +20,8 @@ pub(crate) struct BoundMaps {
     ranges: f32,
     atlas: wgpu::TextureView,
     records: wgpu::Buffer,
+    /// The suns that have maps, and these.
+    suns: Arc<(Suns, wgpu::Buffer)>,
 }
 
 impl BoundMaps {
@@ -23,8 +30,14 @@ impl BoundMaps {
         ranges: f32,
         atlas: wgpu::TextureView,
         records: wgpu::Buffer,
+        suns: (Suns, wgpu::Buffer),
     ) -> Self {
-        Self { model, ranges, atlas, records }
+        Self { model, ranges, atlas, records, suns: Arc::new(suns) }
+    }
+
+    /// The suns that have maps.
+    pub(crate) fn suns(&self) -> Suns {
+        self.suns.0
     }
 
     /// How far from their lights samples may lie that the maps serve, in ranges of the lights.
@@ -45,6 +58,21 @@ impl BoundMaps {
     /// The records of lights and maps.
     pub(crate) fn records(&self) -> &wgpu::Buffer {
         &self.records
+    }
+
+    /// Whether shaders that bind these read the present depths of `other`.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.model == other.model && self.atlas == other.atlas && self.records == other.records
+    }
+
+    /// Layout entry of group 2 of the maps of suns, for the stages that light.
+    pub(crate) fn sun_layout(stages: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+        uniform_entry(SUN_MAPS_BINDING, stages)
+    }
+
+    /// Bind group entry of group 2 of the maps of suns.
+    pub(crate) fn sun_entry(&self) -> wgpu::BindGroupEntry<'_> {
+        entry(SUN_MAPS_BINDING, &self.suns.1)
     }
 
     /// Layout entries of group 2, for the stages that light.

@@ -1,6 +1,6 @@
 //! What lighting reads of the lights' shadows: maps, or the points of lights and the deep images that rays cross.
 
-use assign::{Shader, entry, storage_entry};
+use assign::{Shader, Suns, entry, storage_entry};
 use assign_cdi::{DeepImageSettings, DeepImages, RayBuffers};
 
 use crate::{
@@ -30,7 +30,10 @@ impl ShadowKind {
     pub(crate) fn of(model: ShadowModel) -> Self {
         match model {
             ShadowModel::None => Self::None,
-            ShadowModel::Maps { .. } | ShadowModel::Adaptive { .. } => Self::Maps,
+            ShadowModel::Maps { .. }
+            | ShadowModel::Pcss { .. }
+            | ShadowModel::Paraboloids { .. }
+            | ShadowModel::Adaptive { .. } => Self::Maps,
             ShadowModel::Cdi { .. } => Self::Rays,
         }
     }
@@ -85,6 +88,22 @@ impl BoundShadows {
         match self {
             Self::Maps(_) => None,
             Self::Rays(rays) => Some(*rays.images.settings()),
+        }
+    }
+
+    /// The suns that have maps.
+    pub(crate) fn suns(&self) -> Suns {
+        match self {
+            Self::Maps(maps) => maps.suns(),
+            Self::Rays(_) => Suns::default(),
+        }
+    }
+
+    /// Bind group entry of group 2 of the maps of suns; `None` with rays.
+    pub(crate) fn sun_entry(&self) -> Option<wgpu::BindGroupEntry<'_>> {
+        match self {
+            Self::Maps(maps) => Some(maps.sun_entry()),
+            Self::Rays(_) => None,
         }
     }
 

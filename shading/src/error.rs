@@ -74,7 +74,8 @@ pub enum ShadingError {
     /// The prepared lights are not those that shadow maps were drawn for.
     #[error(
         "the shadow maps were drawn for other lights: draw them again with Renderer::cast_shadows, and create a new \
-         pass. Lights that move, and lights that the GPU makes or orders, have none"
+         pass. If lights move, call Renderer::move_shadows before Renderer::prepare, and record the maps in each \
+         frame (Renderer::record_shadow_maps, record_occluders)"
     )]
     StaleShadows,
     /// Shadow maps that frames subdivide did not come to rest.

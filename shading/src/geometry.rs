@@ -174,15 +174,18 @@ impl SceneGpu {
         self.draw_each(pass, textures, draws.copied(), pipeline);
     }
 
-    /// Draws all pieces that may be seen, sorted by pipeline. `pipeline` looks up a pipeline.
+    /// Draws all pieces that may be seen, or only those of opaque surfaces, sorted by pipeline. `pipeline` looks up a
+    /// pipeline.
     pub(crate) fn draw_pieces<'a>(
         &'a self,
         pass: &mut wgpu::RenderPass<'_>,
-        textures: bool,
+        (textures, only_opaque): (bool, bool),
         may_see: impl Fn([Vec3; 2]) -> bool,
         pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
     ) {
-        self.draw_each(pass, textures, seen_draws(&self.draws, &self.pieces, may_see), pipeline);
+        let seen = seen_draws(&self.draws, &self.pieces, may_see);
+        let draws = seen.into_iter().filter(|draw| !(only_opaque && draw.is_transparent));
+        self.draw_each(pass, textures, draws, pipeline);
     }
 
     /// Issues draws in their order.

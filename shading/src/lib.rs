@@ -98,9 +98,12 @@ pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use shadow_model::{
     ACCEPTED_SHADOW_MODELS, BAND_DIVISORS, FEWEST_ADAPTIVE, MAP_COUNTS, MAX_MAP_PX, MIN_MAP_PX,
-    MOST_ADAPTIVE, RAY_COUNTS, ShadowModel, TAP_COUNTS,
+    MOST_ADAPTIVE, RAY_COUNTS, SOFT_TAP_COUNTS, ShadowModel, TAP_COUNTS,
 };
-pub use shadows::{OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement, shadow_images};
+pub use shadows::{
+    OCCLUSION_TEST, OccluderDepth, ShadowFigures, ShadowRefinement, SunMapRecord, SunMapsRecord,
+    shadow_images,
+};
 pub use targets::Targets;
 pub use truth::{EDGE, LightBvh, is_missed};
 pub use world_triangles::WorldTriangles;

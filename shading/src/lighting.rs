@@ -4,6 +4,7 @@ use assign::{AssignError, Assignment, Gpu, Passes, View, check_listed_reach, tex
 
 use crate::{
     Cut, LightingOptions, Mode, Renderer, ShadingError,
+    bound_shadows::BoundShadows,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     layers::LayerPasses,
     lighting_inputs::{Bound, LightingInputs},
@@ -22,6 +23,8 @@ pub struct Lighting {
     kind: Kind,
     layers: Option<LayerPasses>,
     options: LightingOptions,
+    /// The shadows that it reads.
+    shadows: Option<BoundShadows>,
 }
 
 #[derive(Debug)]
@@ -81,12 +84,12 @@ impl Lighting {
         if !mode.is_forward() {
             renderer.check_one_sample("deferred shading")?;
         }
-        if options.shadows.is_on() && renderer.layers.is_some() {
+        if options.shadows.casts_rays() && renderer.layers.is_some() {
             return Err(AssignError::Parameter {
                 field: "shadow model".into(),
                 value: options.shadows.to_string(),
                 accepted:
-                    "none with transparent surfaces, particles and fog, which maps do not shade"
+                    "none or one with maps where there are transparent surfaces, particles and fog"
                         .into(),
             }
             .into());
@@ -95,6 +98,7 @@ impl Lighting {
         let gpu = &renderer.gpu;
         let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
         let lists = Lists { lookup: strategy.lookup(), options, images: inputs.images() };
+        let shadows = inputs.shadows().cloned();
         let kind = match mode {
             Mode::Deferred | Mode::DeferredIds => {
                 Kind::Deferred(Box::new(Deferred::new(renderer, lists, needs.models, inputs)?))
@@ -117,7 +121,7 @@ impl Lighting {
             Some(layers) => Some(LayerPasses::new(renderer, layers, lists)?),
             None => None,
         };
-        Ok(Self { kind, layers, options })
+        Ok(Self { kind, layers, options, shadows })
     }
 
     /// The options with which it was created.
@@ -126,8 +130,8 @@ impl Lighting {
     }
 
     /// Records the pass `shade`, after the strategy's own passes, and those of layers. Returns an error if the
-    /// prepared lights or the renderer's layers are of a kind for which the shader was not compiled, or if depth or
-    /// winding are.
+    /// prepared lights or the renderer's layers are of a kind for which the shader was not compiled, if depth or
+    /// winding are, or if the shadow maps are not drawn for the lights.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -145,6 +149,7 @@ impl Lighting {
             return Err(ShadingError::Layers { made, drawn: renderer.layer_kinds() });
         }
         lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
+        renderer.check_maps(self.shadows.as_ref(), strategy.needs().occluders)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(Forward { pipelines, orientation, scene, has_depth }) => {

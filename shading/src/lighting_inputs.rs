@@ -8,6 +8,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::{
     LightingOptions, ShadingError,
+    bound_maps::BoundMaps,
     bound_shadows::{BoundShadows, ShadowKind},
     ltc,
 };
@@ -115,7 +116,7 @@ impl LightingInputs {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] if the options ask for other shadows than those, and for shadows of suns.
+    /// [`AssignError::Parameter`] if the options ask for other shadows than those, or for other suns.
     pub(crate) fn new(
         gpu: &Gpu,
         options: LightingOptions,
@@ -162,7 +163,9 @@ impl LightingInputs {
     ) -> impl Iterator<Item = wgpu::BindGroupLayoutEntry> {
         let table = bound.table.then(|| storage_entry(LTC_BINDING, stages, true));
         let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
-        let shadows = bound.shadows.layout(stages);
+        let sun_maps = bound.shadows == ShadowKind::Maps && bound.suns;
+        let sun_maps = sun_maps.then(|| BoundMaps::sun_layout(stages));
+        let shadows = bound.shadows.layout(stages).into_iter().chain(sun_maps);
         [uniform_entry(LIGHTING_BINDING, stages)]
             .into_iter()
             .chain(table)
@@ -174,8 +177,15 @@ impl LightingInputs {
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
         let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
-        let shadows = self.shadows.iter().flat_map(BoundShadows::entries);
+        let sun_maps = self.shadows.as_ref().filter(|_| self.suns.is_some());
+        let sun_maps = sun_maps.and_then(BoundShadows::sun_entry);
+        let shadows = self.shadows.iter().flat_map(BoundShadows::entries).chain(sun_maps);
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns).chain(shadows)
+    }
+
+    /// The shadows that it binds.
+    pub(crate) fn shadows(&self) -> Option<&BoundShadows> {
+        self.shadows.as_ref()
     }
 
     /// Which resources it holds.
@@ -217,14 +227,14 @@ fn bound_shadows(
         let (field, value) = ("shadow model".into(), options.shadows.to_string());
         Err(AssignError::Parameter { field, value, accepted })
     };
-    if !options.suns.is_empty() {
-        return refuse("none with suns, which have no maps".into());
-    }
     match made {
         None => refuse("none before Renderer::cast_shadows".into()),
         Some(maps) if maps.model() != options.shadows => {
             refuse(format!("{}, the model of the renderer's shadows, or none", maps.model()))
         }
+        Some(maps) if maps.suns() != options.suns => refuse(
+            "none with other suns than those of Renderer::cast_shadows_of_suns before Renderer::cast_shadows".into(),
+        ),
         Some(maps) if maps.ranges() < options.ranges_lit() => refuse(format!(
             "none where lights reach {} of their ranges: the maps hold what hides samples within {}. Call \
              Renderer::cast_shadows_within with as many before Renderer::cast_shadows",

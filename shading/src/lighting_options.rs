@@ -45,7 +45,7 @@ pub struct LightingOptions {
     /// compiled and nothing is bound for them.
     pub suns: Suns,
     /// How lights are shadowed. Other than [`ShadowModel::None`], it must be the model of the renderer's maps
-    /// ([`Renderer::cast_shadows`](crate::Renderer::cast_shadows)), without suns and without layers. Off, nothing is
+    /// ([`Renderer::cast_shadows`](crate::Renderer::cast_shadows)), with these suns. Off, nothing is
     /// compiled or bound for it.
     pub shadows: ShadowModel,
 }
@@ -113,7 +113,9 @@ impl LightingOptions {
             .flag("area_lod", self.kinds.areas && self.area_lod.is_some())
             .flag("suns", !self.suns.is_empty())
             .flag("shadows", self.shadows.is_on())
-            .flag("shadow_rays", self.shadows.casts_rays());
+            .flag("shadow_rays", self.shadows.casts_rays())
+            .flag("pcss", self.shadows.is_soft())
+            .flag("paraboloids", self.shadows.is_curved());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }

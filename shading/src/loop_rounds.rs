@@ -105,8 +105,11 @@ impl LightTotals {
         let taps = u64::from(shadows.taps());
         let side = u64::from(shadows.taps().isqrt());
         let maps = self.areas * u64::from(shadows.maps()) + (self.count - self.areas);
+        let look_ups = u64::from(shadows.look_ups());
+        // The loops over look-ups of a soft filter end once each.
+        let soft = if shadows.is_soft() { 2 + look_ups } else { 0 };
         let each = if shadows.casts_rays() { self.ray_rounds } else { 2 * side + taps };
-        self.count + maps.saturating_mul(2 + each)
+        self.count + maps.saturating_mul(1 + soft + look_ups * (1 + each))
     }
 
     /// Checks that an adapter can light a sample by all of the lights, because any list may hold
@@ -153,9 +156,12 @@ impl LightTotals {
 
 /// One round for each sun and one to end, if there are suns.
 fn rounds_of_suns(options: LightingOptions) -> u64 {
+    let taps = u64::from(options.shadows.taps());
+    // One for each row and texel of a map, and one to end each loop.
+    let of_map = if taps > 0 { 1 + 2 * taps.isqrt() + taps } else { 0 };
     match options.suns.as_slice().len() as u64 {
         0 => 0,
-        count => count + 1,
+        count => count * (1 + of_map) + 1,
     }
 }
 
@@ -212,5 +218,8 @@ mod tests {
         // 17 rays of 40 rounds.
         let rays = ShadowModel::Cdi { rays: 16 };
         assert_eq!(totals.with_rays(40).rounds_of_shadows(rays), 2 + 17 * (2 + 40));
+        // 4 look-ups for blockers and 4 of the filter.
+        let soft = ShadowModel::Pcss { maps: 9, px: 64, taps: 4 };
+        assert_eq!(totals.rounds_of_shadows(soft), 2 + 10 * (1 + 2 + 8 + 8 * 4));
     }
 }

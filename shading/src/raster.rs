@@ -29,6 +29,8 @@ pub(crate) enum RasterPass<'a> {
     ShadowMap {
         /// How far depth is moved, in greatest differences of depth between neighbouring texels.
         slopes: f32,
+        /// Whether it is a paraboloid.
+        is_curved: bool,
     },
     /// The G-buffer, drawn where the depth is equal.
     GBuffer {
@@ -101,7 +103,7 @@ impl RasterPass<'_> {
     fn depth_bias(self) -> wgpu::DepthBiasState {
         match self {
             // Reversed depth falls with distance.
-            Self::ShadowMap { slopes } => {
+            Self::ShadowMap { slopes, .. } => {
                 wgpu::DepthBiasState { slope_scale: -slopes, ..Default::default() }
             }
             _ => wgpu::DepthBiasState::default(),
@@ -222,6 +224,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         .flag("write_model_ids", is("write_model_ids"))
         .flag("sheets", is("sheets"))
         .flag("mask", is("depth") && material.mask)
+        .flag("to_paraboloid", matches!(pass, RasterPass::ShadowMap { is_curved: true, .. }))
         .flag("forward_mask", pass.writes_depth() && is("forward") && material.mask)
         .flag("gbuffer_ids", matches!(pass, RasterPass::GBuffer { ids: true }))
         .flag("emissive", shown.emissive && shades)
@@ -344,6 +347,9 @@ fn entry_points(
     shown: Shown,
 ) -> (&'static str, Option<&'static str>, Vec<Option<wgpu::TextureFormat>>) {
     match pass {
+        RasterPass::ShadowMap { is_curved: true, .. } => {
+            ("vertex_surface", Some("fragment_paraboloid"), vec![])
+        }
         RasterPass::Depth | RasterPass::ShadowMap { .. } if key.material.mask => {
             ("vertex_surface", Some("fragment_mask"), vec![])
         }

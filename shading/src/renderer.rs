@@ -32,7 +32,7 @@ pub struct Renderer {
     /// [`Frame::seed`] of the next frame.
     seed: u32,
     models: Vec<ModelBox>,
-    surface_bounds: (Vec3, Vec3),
+    pub(crate) surface_bounds: (Vec3, Vec3),
     shared: SharedPasses,
     /// What is drawn over the opaque surfaces.
     pub(crate) layers: Option<LayerScene>,
@@ -108,7 +108,8 @@ impl Renderer {
 
     /// Sets what is drawn over the opaque surfaces. It holds for frames that are prepared afterwards, with
     /// [`Lighting`](crate::Lighting) that is made afterwards. Transparent surfaces are then no longer drawn as opaque
-    /// ones.
+    /// ones, and cast no shadows. Shadow maps that were drawn with other surfaces are removed: call
+    /// [`cast_shadows`](Self::cast_shadows) afterwards.
     ///
     /// # Errors
     ///
@@ -119,7 +120,11 @@ impl Renderer {
         if layers.is_some() {
             self.check_one_sample("layers over the opaque surfaces")?;
         }
+        let sheets = self.layer_kinds().sheets;
         self.layers = layers;
+        if sheets != self.layer_kinds().sheets {
+            self.shadows.clear();
+        }
         Ok(())
     }
 

@@ -31,6 +31,9 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "suns",
         "shadows",
         "shadow_rays",
+        "pcss",
+        "paraboloids",
+        "to_paraboloid",
         "area_lod",
         "area_point",
         "area_mrp",
@@ -78,6 +81,10 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
         .module("package::suns", include_str!("shaders/suns.wesl"))
         .module("package::shadow", include_str!("shaders/shadow.wesl"))
+        .module("package::paraboloid", include_str!("shaders/paraboloid.wesl"))
+        .module("package::pcss", include_str!("shaders/pcss.wesl"))
+        .module("package::sun_shadow", include_str!("shaders/sun_shadow.wesl"))
+        .module("package::shadow_open", include_str!("shaders/shadow_open.wesl"))
         .module("package::shadow_banding", include_str!("shaders/shadow_banding.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))
         .module("package::scene", include_str!("shaders/scene.wesl"))

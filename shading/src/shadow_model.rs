@@ -15,6 +15,9 @@ pub const RAY_COUNTS: [u32; 7] = [1, 4, 9, 16, 25, 81, 289];
 /// The accepted numbers of taps: squares of 1 to 5 texels.
 pub const TAP_COUNTS: [u32; 5] = [1, 4, 9, 16, 25];
 
+/// The accepted numbers of taps of a soft filter.
+pub const SOFT_TAP_COUNTS: [u32; 6] = [4, 9, 16, 25, 49, 81];
+
 /// The smallest accepted side of a map, texels. The widest filter leaves 12 of 32 texels to a face.
 pub const MIN_MAP_PX: u32 = 32;
 
@@ -47,7 +50,27 @@ pub enum ShadowModel {
         /// Texels that are compared for each map, a square around the sample: one of [`TAP_COUNTS`].
         taps: u32,
     },
-    /// Depth maps as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
+    /// Depth maps whose filter is as wide as the penumbra: percentage-closer soft shadows (Fernando 2005). Each map looks
+    /// for what hides its part of the emitter, and the mean distance of that gives the width. Meant for one map for each
+    /// area light. Lights without an area have hard shadows.
+    Pcss {
+        /// Maps for each area light: one of [`MAP_COUNTS`]. Each is drawn from the middle of its part of the emitter.
+        maps: u32,
+        /// Texels on a side of each map face, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
+        px: u32,
+        /// Look-ups of the search for blockers, and of the filter: one of [`SOFT_TAP_COUNTS`].
+        taps: u32,
+    },
+    /// Depth maps that are paraboloids: one square holds all directions of half a space (Brabec et al. 2002; Dobetsberger
+    /// 2025, section 6.1). Vertices are projected, and edges between them are drawn straight, which bends them. So maps are
+    /// wrong where triangles are large beside their distance from the light. A look-up compares one texel.
+    Paraboloids {
+        /// Maps for each area light: one of [`MAP_COUNTS`].
+        maps: u32,
+        /// Texels on a side of each square, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
+        px: u32,
+    },
+    /// Depth maps with flat faces as above, but each rectangle is subdivided where a frame shows bands, by a quadtree that frames
     /// refine (Dobetsberger 2025, section 6.3 and algorithm 1). A look-up compares one texel.
     Adaptive {
         /// Texels on a side of each map face, even, [`MIN_MAP_PX`] to [`MAX_MAP_PX`].
@@ -81,11 +104,24 @@ impl ShadowModel {
         matches!(self, Self::Cdi { .. })
     }
 
+    /// Whether the filter is as wide as the penumbra.
+    pub fn is_soft(self) -> bool {
+        matches!(self, Self::Pcss { .. })
+    }
+
+    /// Whether maps are paraboloids.
+    pub fn is_curved(self) -> bool {
+        matches!(self, Self::Paraboloids { .. })
+    }
+
     /// Maps or rays for each area light, or the most maps if frames subdivide; 0 without shadows.
     pub fn maps(self) -> u32 {
         match self {
             Self::None => 0,
-            Self::Maps { maps, .. } | Self::Adaptive { most: maps, .. } => maps,
+            Self::Maps { maps, .. } | Self::Pcss { maps, .. } | Self::Paraboloids { maps, .. } => {
+                maps
+            }
+            Self::Adaptive { most, .. } => most,
             Self::Cdi { rays } => rays,
         }
     }
@@ -94,16 +130,28 @@ impl ShadowModel {
     pub fn px(self) -> u32 {
         match self {
             Self::None | Self::Cdi { .. } => 0,
-            Self::Maps { px, .. } | Self::Adaptive { px, .. } => px,
+            Self::Maps { px, .. } | Self::Pcss { px, .. } => px,
+            Self::Paraboloids { px, .. } | Self::Adaptive { px, .. } => px,
         }
     }
 
-    /// Taps for each map, or 1 for each ray; 0 without shadows.
+    /// Texels that a look-up compares, or 1 for each ray; 0 without shadows.
     pub fn taps(self) -> u32 {
         match self {
             Self::None => 0,
             Self::Maps { taps, .. } => taps,
+            Self::Pcss { .. } | Self::Paraboloids { .. } => 1,
             Self::Adaptive { .. } | Self::Cdi { .. } => 1,
+        }
+    }
+
+    /// Look-ups of each map, or rays to each point, for one sample.
+    pub fn look_ups(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Pcss { taps, .. } => 2 * taps,
+            Self::Maps { .. } | Self::Paraboloids { .. } | Self::Adaptive { .. } => 1,
+            Self::Cdi { .. } => 1,
         }
     }
 
@@ -115,6 +163,10 @@ impl ShadowModel {
             Self::Maps { maps, px, taps } => {
                 MAP_COUNTS.contains(&maps) && has_sides(px) && TAP_COUNTS.contains(&taps)
             }
+            Self::Pcss { maps, px, taps } => {
+                MAP_COUNTS.contains(&maps) && has_sides(px) && SOFT_TAP_COUNTS.contains(&taps)
+            }
+            Self::Paraboloids { maps, px } => MAP_COUNTS.contains(&maps) && has_sides(px),
             Self::Adaptive { px, down, most } => {
                 has_sides(px)
                     && BAND_DIVISORS.contains(&down)
@@ -132,6 +184,8 @@ impl fmt::Display for ShadowModel {
             Self::None => f.write_str("none"),
             Self::Maps { maps, px, taps: 1 } => write!(f, "maps:{maps},{px}"),
             Self::Maps { maps, px, taps } => write!(f, "maps:{maps},{px},pcf{taps}"),
+            Self::Pcss { maps, px, taps } => write!(f, "maps:{maps},{px},pcss{taps}"),
+            Self::Paraboloids { maps, px } => write!(f, "maps:{maps},{px},paraboloid"),
             Self::Adaptive { px, down, most } => write!(f, "adaptive:{px},{down},{most}"),
             Self::Cdi { rays } => write!(f, "cdi:{rays}"),
         }
@@ -158,15 +212,23 @@ impl FromStr for ShadowModel {
     }
 }
 
-/// `N,PX` or `N,PX,pcfK`.
+/// `N,PX`, `N,PX,pcfK`, `N,PX,pcssK` or `N,PX,paraboloid`.
 fn maps_of(numbers: &str) -> Option<ShadowModel> {
     let parts: Vec<&str> = numbers.split(',').collect();
-    let (maps, px, taps) = match parts[..] {
-        [maps, px] => (maps, px, "1"),
-        [maps, px, taps] => (maps, px, taps.strip_prefix("pcf")?),
+    let (maps, px, filter) = match parts[..] {
+        [maps, px] => (maps, px, "pcf1"),
+        [maps, px, filter] => (maps, px, filter),
         _ => return None,
     };
-    Some(ShadowModel::Maps { maps: number(maps)?, px: number(px)?, taps: number(taps)? })
+    let (maps, px) = (number(maps)?, number(px)?);
+    if filter == "paraboloid" {
+        return Some(ShadowModel::Paraboloids { maps, px });
+    }
+    match (filter.strip_prefix("pcf"), filter.strip_prefix("pcss")) {
+        (Some(taps), _) => Some(ShadowModel::Maps { maps, px, taps: number(taps)? }),
+        (_, Some(taps)) => Some(ShadowModel::Pcss { maps, px, taps: number(taps)? }),
+        _ => None,
+    }
 }
 
 /// `PX,DOWN,MOST`.
@@ -196,9 +258,10 @@ impl From<ShadowModel> for String {
 }
 
 /// The accepted models.
-pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, adaptive:PX,DOWN,MOST or cdi:N, with N of 1, \
-    4, 9, 25, 81 or 289 maps for each area light, or as many rays or 16, an even PX of 32 to 4096 texels, K of 1, 4, 9, 16 \
-    or 25 taps, a test of bands at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
+pub const ACCEPTED_SHADOW_MODELS: &str = "none, maps:N,PX, maps:N,PX,pcfK, maps:N,PX,pcssK, maps:N,PX,paraboloid, \
+    adaptive:PX,DOWN,MOST or cdi:N, with N of 1, 4, 9, 25, 81 or 289 maps for each area light, or as many rays or 16, an \
+    even PX of 32 to 4096 texels, K of 1, 4, 9, 16 or 25 taps for pcf and 4, 9, 16, 25, 49 or 81 for pcss, a test of bands \
+    at 1/DOWN of the viewport, 1, 2, 4, 8 or 16, and at MOST 4 to 289 maps for each area light";
 
 fn refused(value: &str) -> AssignError {
     AssignError::Parameter {
@@ -220,6 +283,8 @@ mod tests {
                 models.push(ShadowModel::Maps { maps, px: 32 * maps.min(128), taps });
             }
         }
+        models.extend(MAP_COUNTS.map(|maps| ShadowModel::Paraboloids { maps, px: 64 }));
+        models.extend(SOFT_TAP_COUNTS.map(|taps| ShadowModel::Pcss { maps: 4, px: 64, taps }));
         for down in BAND_DIVISORS {
             for most in [4, 64, 289] {
                 models.push(ShadowModel::Adaptive { px: 32 * most.min(128), down, most });
@@ -251,6 +316,13 @@ mod tests {
             "maps:4,512,pcf",
             "maps:4,512,pcf8",
             "maps:4,512,pcf9,1",
+            "maps:4,512,paraboloids",
+            "maps:4,512,paraboloid,pcf4",
+            "maps:4,513,paraboloid",
+            "maps:4,512,pcss",
+            "maps:4,512,pcss1",
+            "maps:4,512,pcss8",
+            "maps:4,512,pcss9,1",
             "maps:+4,512",
             "maps:4,99999999999",
             "maps:-4,512",
@@ -278,7 +350,8 @@ mod tests {
             let error = bad.parse::<ShadowModel>().unwrap_err().to_string();
             let expected = format!("shadow model is {bad}: it must be none, maps:N,PX");
             assert!(error.starts_with(&expected), "{error}");
-            for count in RAY_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS) {
+            let counts = RAY_COUNTS.iter().chain(&TAP_COUNTS).chain(&BAND_DIVISORS);
+            for count in counts.chain(&SOFT_TAP_COUNTS) {
                 assert!(error.contains(&count.to_string()), "{count} is not named: {error}");
             }
         }

@@ -9,7 +9,7 @@ use assign::{
 };
 use shading::{
     FogRecord, InstanceRecord, LightingRecord, MaterialRecord, ParticleRecord, PixelGroupsRecord,
-    PixelSurface, SunRecord, SunsRecord,
+    PixelSurface, SunMapRecord, SunMapsRecord, SunRecord, SunsRecord,
 };
 
 /// A shader that reads instances and materials.
@@ -63,6 +63,14 @@ fn suns() {
     assert_eq!(lighting().layout_of("Suns"), rust, "WESL, then Rust");
     let rust = struct_layout!(SunRecord: to_sun, irradiance);
     assert_eq!(lighting().layout_of("Sun"), rust, "WESL, then Rust");
+    let look_up = include_str!("../../assign/src/shaders/everything.wesl");
+    let shader = shading::lighting_shader().flag("suns", true).flag("shadows", true);
+    let shader = shader.module("package::strategy", look_up);
+    let shadowed = LinkedModule::new("deferred", &shader.link("package::deferred").unwrap());
+    let rust = struct_layout!(SunMapsRecord: maps, taps, px, slack);
+    assert_eq!(shadowed.layout_of("SunMaps"), rust, "WESL, then Rust");
+    let rust = struct_layout!(SunMapRecord: right, down, away, origin, texel_m, offset_m);
+    assert_eq!(shadowed.layout_of("SunMap"), rust, "WESL, then Rust");
 }
 
 #[test]

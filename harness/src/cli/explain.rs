@@ -82,7 +82,7 @@ pub struct ExplainArgs {
     pub specular_reach: Option<f64>,
 
     /// How lights are shadowed, as for `compare`
-    #[arg(long, value_name = "none|maps:N,PX[,pcfK]|adaptive:PX,DOWN,MOST|cdi:N", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
+    #[arg(long, value_name = "none|maps:N,PX[,pcfK|,pcssK|,paraboloid]|adaptive:PX,DOWN,MOST|cdi:N", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
     pub shadows: ShadowModel,
 
     /// Even out the brightness of virtual point lights, as for `compare`

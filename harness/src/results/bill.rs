@@ -33,6 +33,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
         ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
         ("depth", Mode::ForwardNoPrepass) => PassKind::Assign,
         ("depth" | "gbuffer" | "resolve" | "fog-sum" | "fog-apply", _) => PassKind::Scene,
+        ("shadow-plan" | "shadow-maps", _) => PassKind::Scene,
         ("shade" | "clay" | "fog-light" | "blend", _) => PassKind::Shade,
         _ => PassKind::Assign,
     }
@@ -42,7 +43,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
 pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" | "rsm-depth" | "rsm-gbuffer" => true,
-        "blend" | "fog-apply" => true,
+        "blend" | "fog-apply" | "shadow-maps" => true,
         "shade" => mode.is_forward() || strategy.shade_rasterises(),
         "count" | "fill" => strategy.options().scatter == Scatter::Raster,
         _ => false,
@@ -224,6 +225,11 @@ mod tests {
         assert_eq!(passes_of("HG/48x48x40/raster", Mode::Deferred, &hybrid), "count,fill");
         assert_eq!(passes_of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
         assert_eq!(passes_of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
+        // All methods draw the maps of lights that move; those with `/occ` pay for what they ask of them.
+        let moving =
+            [("shadow-plan", 1.0), ("shadow-maps", 3.0), ("occluders", 1.0), ("shade", 1.0)];
+        let moving = record("T-E/28x28/occ", Mode::Deferred, &moving);
+        assert_eq!((moving.times.assign_ms, moving.times.frame_ms), (1.0, 6.0));
     }
 
     #[test]

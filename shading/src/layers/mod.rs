@@ -26,8 +26,9 @@
 //! # Light
 //!
 //! Transparent surfaces reflect light as opaque ones do. Fog and particles scatter the light of all directions alike
-//! (`scattered_light.wesl`). Fog is even: it has one density, and scatters all light that it stops. Nothing casts
-//! shadows, as everywhere in this pipeline.
+//! (`scattered_light.wesl`). Fog is even: it has one density, and scatters all light that it stops. With
+//! [shadow maps](crate::ShadowModel), opaque surfaces shadow all layers. Layers cast no shadows: light passes them
+//! unweakened.
 //!
 //! Fog is lit at the centres of its froxels (Wronski 2014, "Volumetric Fog"): a lamp smaller than a froxel has a
 //! halo as wide as the froxel. It is summed by the integral over each slice (Hillaire 2015, "Physically Based and

@@ -52,7 +52,7 @@ impl LayerPasses {
             }
             .into());
         }
-        let inputs = LightingInputs::new(&renderer.gpu, lists.options, None)?;
+        let inputs = LightingInputs::new(&renderer.gpu, lists.options, renderer.shadows.bound())?;
         let fragments = Fragments::Light(&inputs, layers.fog_volume());
         let blend = match kinds.is_blended() {
             true => Some(Blend::new(renderer, layers, Some(lists), fragments)?),

@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
-use assign::{AssignError, EncoderPasses, LightBuffer, Passes};
+use assign::{AssignError, EncoderPasses, LightBuffer, Passes, Suns};
 use assign_cdi::{DeepImageSettings, DeepImages};
 
-use super::{OccluderDepth, ShadowFigures, ShadowMaps, rays::ShadowRays};
-use crate::{Renderer, ShadingError, ShadowModel, WorldTriangles};
+use super::{Asked, OccluderDepth, ShadowFigures, ShadowMaps, SunnyScene, rays::ShadowRays};
+use crate::{Renderer, ShadingError, ShadowModel, WorldTriangles, bound_shadows::BoundShadows};
 
 impl Renderer {
     /// Makes shadow maps for lights that stand still, and draws them, in a submission of its own. It holds for frames
     /// that are prepared afterwards, with [`Lighting`](crate::Lighting) that is made afterwards. Frames with other
-    /// lights are refused until it is called again. [`ShadowModel::None`] removes the maps.
+    /// lights are refused until it is called again, or [`move_shadows`](Self::move_shadows). [`ShadowModel::None`] removes the
+    /// maps.
     ///
     /// With [`ShadowModel::Cdi`] there are no maps: it places points on the lights, and builds deep images of the scene
     /// ([`cast_rays_through`](Self::cast_rays_through)). All else holds alike.
@@ -50,6 +51,12 @@ impl Renderer {
         self.shadows.solid = Some((triangles, images));
     }
 
+    /// Has maps that are cast afterwards shadow suns, too: each gets one map of the whole scene, with as many texels as a
+    /// face of a light's map. [`LightingOptions::suns`](crate::LightingOptions::suns) must then be these.
+    pub fn cast_shadows_of_suns(&mut self, suns: Suns) {
+        self.shadows.suns = suns;
+    }
+
     /// [`cast_shadows`](Self::cast_shadows), but records the pass `shadow-maps` into `passes`. The caller submits them
     /// before the first frame that reads the maps, and can time them.
     ///
@@ -68,11 +75,10 @@ impl Renderer {
         passes: &mut dyn Passes,
     ) -> Result<Option<ShadowFigures>, ShadingError> {
         // The old atlas makes room for the new one.
-        (self.shadows.maps, self.shadows.rays) = (None, None);
+        self.shadows.clear();
         if !model.is_on() {
             return Ok(None);
         }
-        let asked = (model, self.shadows.ranges);
         if model.casts_rays() {
             let Some((triangles, images)) = &self.shadows.solid else {
                 return Err(AssignError::Parameter {
@@ -82,9 +88,16 @@ impl Renderer {
                 }
                 .into());
             };
+            let asked = (model, self.shadows.ranges);
             let rays = ShadowRays::new(&self.gpu, lights, asked, (triangles, *images))?;
             self.shadows.rays = Some(rays);
         } else {
+            let asked = Asked {
+                model,
+                ranges: self.shadows.ranges,
+                only_opaque: self.layer_kinds().sheets,
+                sunny: SunnyScene { suns: self.shadows.suns, bounds: self.surface_bounds },
+            };
             let maps = ShadowMaps::new(&self.gpu, &self.scene, &self.frame, lights, asked)?;
             self.shadows.maps = Some(maps);
         }
@@ -98,7 +111,9 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] without shadow maps, and [`AssignError::OutOfMemory`].
+    /// [`AssignError::Parameter`] without shadow maps, [`AssignError::Unsupported`] for [`ShadowModel::Pcss`] and
+    /// [`ShadowModel::Paraboloids`], and
+    /// [`AssignError::OutOfMemory`].
     pub fn find_occluders_in(
         &mut self,
         kept: OccluderDepth,
@@ -113,7 +128,17 @@ impl Renderer {
             }
             .into());
         };
-        maps.make_pyramid(&self.gpu, kept)?.record(passes);
+        let model = maps.figures().model;
+        if model.is_soft() || model.is_curved() {
+            return Err(AssignError::Unsupported {
+                strategy: "the test of what hides lights".into(),
+                asked: format!("shadow model {model}"),
+                reason: "it knows which texels flat faces with small filters read".into(),
+            }
+            .into());
+        }
+        maps.make_pyramid(&self.gpu, kept)?;
+        maps.record_occluders(passes);
         Ok(maps.figures())
     }
 
@@ -129,15 +154,58 @@ impl Renderer {
         Ok(figures)
     }
 
-    /// Records the pass `shadow-maps`, which draws all maps again, and the pass `occluders` if these
-    /// were asked for. With rays, it records the passes that build the deep images again. Nothing without shadows.
+    /// Moves the maps with their lights, for frames whose lights are no longer those of
+    /// [`cast_shadows`](Self::cast_shadows). It plans the maps on the CPU and uploads their places, through the queue: call it
+    /// once per submission, before [`prepare`](Self::prepare). Then record [`record_shadow_maps`](Self::record_shadow_maps),
+    /// and [`record_occluders`](Self::record_occluders) for strategies that ask what hides lights, before the strategy's
+    /// passes. [`Lighting`](crate::Lighting) stays the same. Does nothing without maps, and if no light has changed.
+    ///
+    /// The atlas keeps its size. Cast shadows for as many lights as any frame has.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] for lights that the GPU moves, makes or orders, and for models that frames subdivide.
+    /// [`AssignError::Parameter`] if the lights need a larger atlas than those for which shadows were cast. The maps then
+    /// stay as they are.
+    pub fn move_shadows(&mut self, lights: &LightBuffer) -> Result<(), ShadingError> {
+        let Self { gpu, shadows, .. } = self;
+        shadows.maps.as_mut().map_or(Ok(()), |maps| maps.follow(gpu, lights))
+    }
+
+    /// Records the pass `shadow-maps`, which draws all maps again. With rays, it records the passes that build the deep images
+    /// again. Nothing without shadows.
     pub fn record_shadow_maps(&mut self, passes: &mut dyn Passes) {
-        if let Some(maps) = &self.shadows.maps {
-            maps.record(&self.scene, &self.scene_group, passes);
+        let Self { scene, scene_group, shadows, .. } = self;
+        if let Some(maps) = &mut shadows.maps {
+            maps.record(scene, scene_group, passes);
         }
-        if let Some(rays) = &mut self.shadows.rays {
+        if let Some(rays) = &mut shadows.rays {
             rays.record(passes);
         }
+    }
+
+    /// Records the pass `occluders`, which finds again what hides lights from groups, after `shadow-maps`; nothing without
+    /// [`find_occluders`](Self::find_occluders).
+    pub fn record_occluders(&mut self, passes: &mut dyn Passes) {
+        if let Some(maps) = &mut self.shadows.maps {
+            maps.record_occluders(passes);
+        }
+    }
+
+    /// Refuses shaders that read other maps than the renderer's, and maps that were not drawn for the present lights.
+    /// `asks_occluders`: lists were made by what hides lights.
+    pub(crate) fn check_maps(
+        &self,
+        bound: Option<&BoundShadows>,
+        asks_occluders: bool,
+    ) -> Result<(), ShadingError> {
+        let Some(BoundShadows::Maps(bound)) = bound else { return Ok(()) };
+        let is_current = self.shadows.maps.as_ref().is_some_and(|maps| {
+            maps.is_drawn()
+                && maps.bound().is_same(bound)
+                && (!asks_occluders || maps.has_occluders())
+        });
+        if is_current { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 
     /// What was made for the present shadows; `None` without any.

@@ -23,6 +23,8 @@ pub(super) struct Face {
     pub(super) eye: Vec3,
     /// Distance from the eye beyond which nothing hides a sample that the light reaches, metres: [`beyond`].
     pub(super) reach_m: f32,
+    /// Whether it is a paraboloid, whose radius is 1 in `view_to_clip` where directions lie across the axis.
+    pub(super) is_curved: bool,
 }
 
 /// Right, down and forward of each face: `face_of` in `shadow.wesl`.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use assign::{LightBuffer, Occluders};
+use assign::{LightBuffer, Occluders, Suns};
 use assign_cdi::DeepImageSettings;
 
 use super::{ShadowMaps, rays::ShadowRays};
@@ -18,15 +18,23 @@ pub(crate) struct Shadows {
     pub(super) solid: Option<(Arc<WorldTriangles>, DeepImageSettings)>,
     /// How far from their lights samples may lie that shadow maps serve, in ranges of the lights.
     pub(super) ranges: f32,
+    /// The suns that get shadow maps.
+    pub(super) suns: Suns,
 }
 
 impl Default for Shadows {
     fn default() -> Self {
-        Self { maps: None, rays: None, solid: None, ranges: f32::INFINITY }
+        let suns = Suns::default();
+        Self { maps: None, rays: None, solid: None, ranges: f32::INFINITY, suns }
     }
 }
 
 impl Shadows {
+    /// Removes what was made.
+    pub(crate) fn clear(&mut self) {
+        (self.maps, self.rays) = (None, None);
+    }
+
     /// Refuses lights other than those that the shadows were made for.
     pub(crate) fn check_lights(&self, lights: &LightBuffer) -> Result<(), ShadingError> {
         let made = [

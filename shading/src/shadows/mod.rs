@@ -47,6 +47,27 @@
 //! `4 depth / px + depth / 1024`, or as many more texels as the filter is wide. The offset of a sample follows the shading
 //! normal: where a normal map turns it away from the surface, the offset is less than the surface needs.
 //!
+//! # Soft filters
+//!
+//! With [`ShadowModel::Pcss`], each map looks for what hides its part of the light, and filters as widely as that makes the
+//! penumbra ([`patch`]). Each look-up has the offsets of a single texel.
+//!
+//! # Paraboloids
+//!
+//! With [`ShadowModel::Paraboloids`], half the space is one square: the direction at the angle `t` to the axis lies
+//! `tan(t / 2)` from the middle. A look-up takes the offset of a flat face across the line from the light to the sample. The
+//! rasteriser draws straight edges, so large triangles are wrong ([`ShadowModel::Paraboloids`]).
+//!
+//! # Layers
+//!
+//! Transparent surfaces are looked up as opaque ones. Fog and particles have no normal: no point stands below their horizon,
+//! nothing is moved along a normal, and a patch counts by its solid angle (`shadow_open.wesl`). Surfaces that are drawn as
+//! layers cast no shadow.
+//!
+//! # Suns
+//!
+//! Each sun has one orthographic map of the whole scene ([`sun_maps`]), in the same atlas.
+//!
 //! # Subdivision
 //!
 //! With [`ShadowModel::Adaptive`], [`quadtree`] divides each rectangle where frames show bands (Dobetsberger 2025,
@@ -56,8 +77,9 @@
 //!
 //! # Cost
 //!
-//! Maps hold while lights and scene stand still, so they are drawn once, before the frames. Shading reads
-//! `maps * taps` texels per light and sample. A map of an area light takes `3 px^2` texels of 4 bytes if it is
+//! Maps hold while lights and scene stand still, so they are drawn once, before the frames. If lights move, each frame plans
+//! and draws all maps again ([`moved`]), which must be lights that the CPU knows. Shading reads `maps * taps` texels per light
+//! and sample, and twice as many with a soft filter. A map of an area light takes `3 px^2` texels of 4 bytes if it is
 //! one-sided, and `6 px^2` otherwise.
 //!
 //! # Where it fails
@@ -67,24 +89,30 @@
 //! highlight whose part of the emitter is hidden stays visible: the separation error. It is zero on matte surfaces.
 
 mod adaptive;
+mod atlas;
 mod banding;
 mod cast;
 mod clear_face;
+mod draw;
 mod face;
 mod figures;
 mod held;
+mod moved;
 mod occluders;
+mod patch;
 mod plan;
 mod points;
 mod quadtree;
 mod rays;
+mod reach;
 mod rectangle;
 mod refine;
 mod sight;
 mod start_level;
+mod sun_maps;
 mod views;
 
-use assign::{AssignError, FrameBindings, Gpu, Light, LightBuffer, Occluders, Passes, View};
+use assign::{FrameBindings, Gpu, Light, LightBuffer, Passes, View};
 use bytemuck::cast_slice;
 
 use crate::{
@@ -92,28 +120,38 @@ use crate::{
     bound_maps::BoundMaps,
     geometry::SceneGpu,
     raster::{Orientation, RasterPass, RasterPipelines},
-    targets::DEPTH_FORMAT,
 };
 
 use adaptive::Adaptive;
 pub use adaptive::ShadowRefinement;
+use atlas::{STORAGE_BUFFERS, atlas, check_device};
 use banding::Drawn;
 use face::Face;
 pub use figures::ShadowFigures;
 pub(crate) use held::Shadows;
+use moved::check_known;
 use occluders::Pyramid;
 pub use occluders::{OCCLUSION_TEST, OccluderDepth};
 use plan::Plan;
 pub use rays::shadow_images;
-use sight::Sight;
+pub(crate) use sun_maps::SunnyScene;
+pub use sun_maps::{SunMapRecord, SunMapsRecord};
 use views::Views;
 
 /// The longest side of an atlas, texels, if the device allows more: its places are stored in 16 bits.
 const MOST_ATLAS_PX: u32 = 1 << 15;
 
-/// Storage buffers that a shader with lists and shadows may bind: lights and lists 6, materials, the table of area
-/// lights, and the records of maps.
-const STORAGE_BUFFERS: u32 = 9;
+/// What maps are made for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub(crate) model: ShadowModel,
+    /// How far samples may lie that lights reach, in ranges of the lights.
+    pub(crate) ranges: f32,
+    /// Whether transparent surfaces cast no shadows.
+    pub(crate) only_opaque: bool,
+    /// What suns light.
+    pub(crate) sunny: SunnyScene,
+}
 
 /// The shadow maps of a scene's lights.
 #[derive(Debug)]
@@ -123,23 +161,29 @@ pub(crate) struct ShadowMaps {
     lights: Vec<Light>,
     /// All places of faces, some of which may be free.
     faces: Vec<Face>,
+    /// How many faces there is room for.
+    capacity: usize,
     /// The faces of all maps, ascending.
     drawn: Vec<u32>,
+    /// Those of flat faces, and of paraboloids if there are any.
     pipelines: RasterPipelines,
+    curved: Option<RasterPipelines>,
     views: Views,
     bound: BoundMaps,
     /// The trees of rectangles, if frames subdivide them.
     adaptive: Option<Adaptive>,
     /// Maps of lights that have no tree.
     fixed_maps: u32,
-    /// How far samples may lie that lights reach, in ranges of the lights.
-    ranges: f32,
+    asked: Asked,
     /// What hides lights from groups, if asked for.
     pyramid: Option<Pyramid>,
+    /// Whether the maps of these lights were drawn, and what hides them from groups was found.
+    is_drawn: bool,
+    has_occluders: bool,
 }
 
 impl ShadowMaps {
-    /// Plans the maps of `lights` and allocates them. Samples may lie up to `ranges` of the lights' ranges from them.
+    /// Plans the maps of `lights` and allocates them.
     ///
     /// # Errors
     ///
@@ -150,17 +194,18 @@ impl ShadowMaps {
         scene: &SceneGpu,
         frame: &FrameBindings,
         lights: &LightBuffer,
-        (model, ranges): (ShadowModel, f32),
+        asked: Asked,
     ) -> Result<Self, ShadingError> {
         check_device(gpu, "shading with shadow maps", STORAGE_BUFFERS)?;
-        check_known(lights, model)?;
+        let Asked { model, ranges, .. } = asked;
+        check_known(model, lights)?;
         let most_px = gpu.device.limits().max_texture_dimension_2d.min(MOST_ATLAS_PX);
-        let mut plan = Plan::new(lights.lights(), model, most_px)?;
+        let mut plan = Plan::new(lights.lights(), asked.sunny, model, most_px)?;
         let adaptive = Adaptive::new(gpu, frame.layout(), &mut plan, lights.lights(), model)?;
         let figures = ShadowFigures {
             model,
             maps_per_area_light: plan.maps,
-            maps: plan.map_count,
+            maps: plan.map_count + asked.sunny.squares(),
             faces: plan.faces.len() as u32,
             atlas_px: plan.size,
             occluder_bytes: 0,
@@ -172,27 +217,34 @@ impl ShadowMaps {
         let atlas = gpu.allocate("the atlas of shadow maps", figures.atlas_bytes(), || {
             atlas(gpu, plan.size)
         })?;
+        let sun_maps = gpu.uniform("maps of suns", size_of::<SunMapsRecord>() as u64);
+        gpu.queue.write_buffer(&sun_maps, 0, bytemuck::bytes_of(&plan.suns));
         let (views, layout) = Views::new(gpu, &plan.faces)?;
-        let pipelines = RasterPipelines::new(
-            gpu,
-            &layout,
-            scene,
-            Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 },
-            RasterPass::ShadowMap { slopes: plan.slopes },
-        )?;
+        let orientation =
+            Orientation { depth: assign::DepthMapping::Reversed, is_mirrored: false, samples: 1 };
+        let pipelines_of = |is_curved| {
+            let pass = RasterPass::ShadowMap { slopes: plan.slopes, is_curved };
+            RasterPipelines::new(gpu, &layout, scene, orientation, pass)
+        };
+        let pipelines = pipelines_of(false)?;
+        let curved = model.is_curved().then(|| pipelines_of(true)).transpose()?;
         let subdivided = plan.sites.len() as u32 * plan.maps;
         let mut maps = Self {
-            fixed_maps: plan.map_count - subdivided,
+            fixed_maps: figures.maps - subdivided,
             figures,
             lights: lights.lights().to_vec(),
             drawn: (0..figures.faces).collect(),
+            capacity: plan.faces.len(),
             faces: plan.faces,
             pipelines,
+            curved,
             views,
-            bound: BoundMaps::new(model, ranges, atlas, records),
+            bound: BoundMaps::new(model, ranges, atlas, records, (asked.sunny.suns, sun_maps)),
             adaptive,
-            ranges,
+            asked,
             pyramid: None,
+            is_drawn: false,
+            has_occluders: false,
         };
         maps.count_maps();
         Ok(maps)
@@ -213,6 +265,16 @@ impl ShadowMaps {
     /// What lighting reads.
     pub(crate) fn bound(&self) -> &BoundMaps {
         &self.bound
+    }
+
+    /// Whether the maps of these lights were drawn.
+    pub(crate) fn is_drawn(&self) -> bool {
+        self.is_drawn
+    }
+
+    /// Whether what hides these lights from groups was found.
+    pub(crate) fn has_occluders(&self) -> bool {
+        self.is_drawn && self.has_occluders
     }
 
     /// Whether frames subdivide rectangles.
@@ -251,6 +313,7 @@ impl ShadowMaps {
         fresh.sort_unstable();
         if !fresh.is_empty() {
             self.draw(scene, scene_group, &fresh, wgpu::LoadOp::Load, passes);
+            self.record_occluders(passes);
         }
         Ok(found)
     }
@@ -266,114 +329,4 @@ impl ShadowMaps {
             None => Ok(false),
         }
     }
-
-    /// Records the pass `shadow-maps`: the depth of all triangles that a face may show.
-    pub(crate) fn record(
-        &self,
-        scene: &SceneGpu,
-        scene_group: &wgpu::BindGroup,
-        passes: &mut dyn Passes,
-    ) {
-        // Nothing is infinitely far.
-        self.draw(scene, scene_group, &self.drawn, wgpu::LoadOp::Clear(0.0), passes);
-    }
-
-    /// Draws some faces. Unless the whole atlas is cleared, each of them is.
-    fn draw(
-        &self,
-        scene: &SceneGpu,
-        scene_group: &wgpu::BindGroup,
-        faces: &[u32],
-        load: wgpu::LoadOp<f32>,
-        passes: &mut dyn Passes,
-    ) {
-        let clear = self.adaptive.as_ref().map(|adaptive| &adaptive.clear_face);
-        let clear = clear.filter(|_| load == wgpu::LoadOp::Load);
-        let descriptor = wgpu::RenderPassDescriptor {
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: self.bound.atlas(),
-                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        };
-        passes.render("shadow-maps", &descriptor, &mut |pass| {
-            for ix in faces {
-                let face = &self.faces[*ix as usize];
-                let ([x, y], [width, height]) = (face.origin, face.size);
-                pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
-                pass.set_scissor_rect(x, y, width, height);
-                if let Some(clear) = clear {
-                    pass.set_pipeline(clear);
-                    pass.draw(0..3, 0..1);
-                }
-                pass.set_bind_group(0, &self.views.group, &[*ix * self.views.stride]);
-                pass.set_bind_group(2, scene_group, &[]);
-                let sight = Sight::new(face, self.ranges);
-                let may_see = |bounds| sight.may_see(bounds);
-                let pipeline = |key| self.pipelines.get(key);
-                scene.draw_pieces(pass, scene.has_mask(), may_see, pipeline);
-            }
-        });
-        if let Some(pyramid) = &self.pyramid {
-            pyramid.record(passes);
-        }
-    }
-
-    /// Makes the pyramid of depths. [`record`](Self::record) fills it from then on.
-    pub(crate) fn make_pyramid(
-        &mut self,
-        gpu: &Gpu,
-        kept: OccluderDepth,
-    ) -> Result<&Pyramid, ShadingError> {
-        let pyramid = Pyramid::new(gpu, self.bound.atlas(), self.figures.atlas_px, kept)?;
-        self.figures.occluder_bytes = pyramid.bytes();
-        Ok(self.pyramid.insert(pyramid))
-    }
-
-    /// What hides lights from groups; `None` without a pyramid.
-    pub(crate) fn occluders(&self) -> Option<Occluders<'_>> {
-        Some(self.pyramid.as_ref()?.occluders(self.bound.records()))
-    }
-}
-
-fn check_device(gpu: &Gpu, what: &str, buffers: u32) -> Result<(), AssignError> {
-    let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
-    if has >= buffers {
-        return Ok(());
-    }
-    Err(AssignError::Limit {
-        strategy: what.into(),
-        limit: "max_storage_buffers_per_shader_stage",
-        needs: buffers.into(),
-        has: has.into(),
-    })
-}
-
-/// Refuses lights whose slots only the GPU knows.
-fn check_known(lights: &LightBuffer, model: ShadowModel) -> Result<(), AssignError> {
-    if !lights.order().is_on_gpu() && lights.live_count().is_none() {
-        return Ok(());
-    }
-    Err(AssignError::Unsupported {
-        strategy: format!("shadow model {model}"),
-        asked: "lights that the GPU moves, makes or orders".into(),
-        reason: "the CPU chooses points of the lights, and must know the lights and their order"
-            .into(),
-    })
-}
-
-fn atlas(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadow maps"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -5,17 +5,16 @@ use glam::{DMat3, DVec3, Mat4, Vec3};
 
 use super::{
     face::{FACES, Face, across, beyond, turned, view_to_clip, world_to_view},
+    patch::{PATCH_VECTORS, WIDEST_SEARCH, middles_of, patch_of},
     points::{LightPoint, points_of},
+    reach::{Reach, axes_of, round_spread},
+    sun_maps::{SunMapsRecord, SunnyScene},
 };
 use crate::{FEWEST_ADAPTIVE, MAP_COUNTS, ShadowModel};
 
 /// Texels beyond each edge of a face, per texel of the filter's side. The offset along the normal moves a look-up by at
 /// most one texel per texel of the filter, and its taps reach half as far again.
 const GUARD_PX: u32 = 2;
-
-/// Outer half angles of spots up to this one, radians, get one face. A wider one would waste more texels at its edge
-/// than a hemisphere's five faces do.
-const WIDEST_FACE: f32 = std::f32::consts::FRAC_PI_3;
 
 /// The near plane of a map, in ranges of its light. Reversed depth in floating point is as precise for any near plane.
 const NEAR_SHARE: f64 = 1.0 / (1 << 20) as f64;
@@ -42,6 +41,8 @@ pub(super) struct Plan {
     pub(super) map_count: u32,
     /// The rectangles that frames subdivide, ascending. Their maps are placed, and wait for their points.
     pub(super) sites: Vec<Site>,
+    /// The maps of suns, which are the first faces.
+    pub(super) suns: SunMapsRecord,
 }
 
 /// Where the maps of a light lie whose points change.
@@ -64,52 +65,6 @@ impl Site {
     pub(super) fn world_to_view(&self, face: usize, eye: DVec3) -> Mat4 {
         let (right, down, forward) = self.turned[face];
         world_to_view(right, down, -forward, eye)
-    }
-}
-
-/// The directions in which a light shines, as faces of maps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Reach {
-    /// A cone around z: one face, with the tangent of the half angle.
-    Cone(f64),
-    /// The half space around +z: one whole face, and the upper halves of four more.
-    Half,
-    /// All directions: six faces.
-    All,
-}
-
-impl Reach {
-    fn of_light(light: &Light) -> Self {
-        match &light.shape {
-            LightShape::Point => Self::All,
-            LightShape::Spot { outer_angle, .. } if *outer_angle <= WIDEST_FACE => {
-                Self::Cone(f64::from(*outer_angle).tan())
-            }
-            LightShape::Spot { outer_angle, .. } if *outer_angle <= std::f32::consts::FRAC_PI_2 => {
-                Self::Half
-            }
-            LightShape::Spot { .. } => Self::All,
-            LightShape::Area(emitter) if emitter.shines_all_around() => Self::All,
-            LightShape::Area(_) | LightShape::Vpl { .. } => Self::Half,
-        }
-    }
-
-    /// Faces of a map.
-    fn face_count(self) -> usize {
-        match self {
-            Self::Cone(_) => 1,
-            Self::Half => FACES - 1,
-            Self::All => FACES,
-        }
-    }
-
-    /// Squares of the atlas that a map takes. Two halves share one.
-    fn squares(self) -> u64 {
-        match self {
-            Self::Cone(_) => 1,
-            Self::Half => 3,
-            Self::All => FACES as u64,
-        }
     }
 }
 
@@ -141,8 +96,9 @@ fn fixed_count(maps: u32) -> u32 {
 }
 
 /// Squares of the atlas that all lights take.
-fn squares(lights: &[Light], maps: u32) -> u64 {
-    lights.iter().map(|light| maps_of(light, maps) * Reach::of_light(light).squares()).sum()
+fn squares(lights: &[Light], maps: u32, are_curved: bool) -> u64 {
+    let of_light = |light| maps_of(light, maps) * Reach::of_light(light).squares(are_curved);
+    lights.iter().map(of_light).sum()
 }
 
 impl Plan {
@@ -154,11 +110,12 @@ impl Plan {
     /// [`AssignError::Parameter`] if not even one map for each light fits, or the model is faulty or off.
     pub(super) fn new(
         lights: &[Light],
+        sunny: SunnyScene,
         model: ShadowModel,
         most_px: u32,
     ) -> Result<Self, AssignError> {
         model.check()?;
-        let (px, taps) = (model.px(), model.taps());
+        let px = model.px();
         // The numbers of maps to try, from the most.
         let counts: Vec<u32> = match model {
             ShadowModel::None | ShadowModel::Cdi { .. } => {
@@ -168,7 +125,9 @@ impl Plan {
                     accepted: "a model with maps".into(),
                 });
             }
-            ShadowModel::Maps { maps, .. } => {
+            ShadowModel::Maps { maps, .. }
+            | ShadowModel::Pcss { maps, .. }
+            | ShadowModel::Paraboloids { maps, .. } => {
                 MAP_COUNTS.into_iter().rev().filter(|count| *count <= maps).collect()
             }
             ShadowModel::Adaptive { most, .. } => (FEWEST_ADAPTIVE..=most).rev().collect(),
@@ -176,7 +135,9 @@ impl Plan {
         let columns_most = most_px / px;
         let most = u64::from(columns_most).pow(2);
         let fewest = counts.last().copied().unwrap_or(1);
-        let fits = |maps: u32| squares(lights, maps) <= most;
+        let are_curved = model.is_curved();
+        let squares = |maps: u32| squares(lights, maps, are_curved) + u64::from(sunny.squares());
+        let fits = |maps: u32| squares(maps) <= most;
         let maps = counts.into_iter().filter(|_| fits(fewest)).find(|maps| fits(*maps));
         let Some(maps) = maps else {
             return Err(AssignError::Parameter {
@@ -185,20 +146,36 @@ impl Plan {
                 accepted: format!(
                     "one whose maps fit an atlas of {most_px}x{most_px} texels: {fewest} for each area light and one \
                      for each other light take {} squares of {px} texels, and {most} fit",
-                    squares(lights, fewest)
+                    squares(fewest)
                 ),
             });
         };
-        let total = squares(lights, maps).max(1) as u32;
+        let total = squares(maps).max(1) as u32;
         let columns = ((f64::from(total)).sqrt().ceil() as u32).clamp(1, columns_most);
+        Ok(Self::place(lights, sunny, model, (maps, columns)))
+    }
+
+    /// Plans so many maps for each area light, in an atlas of so many columns of squares. It has as many rows as it needs.
+    pub(super) fn place(
+        lights: &[Light],
+        sunny: SunnyScene,
+        model: ShadowModel,
+        (maps, columns): (u32, u32),
+    ) -> Self {
+        let (px, taps) = (model.px(), model.taps());
+        let total = (squares(lights, maps, model.is_curved()) as u32 + sunny.squares()).max(1);
+        let guard = GUARD_PX * taps.isqrt();
+        let (sun_faces, suns) = sunny.maps(columns, px, (guard, taps.isqrt()));
         let size = [columns * px, total.div_ceil(columns) * px];
         let mut planner = Planner {
             px,
             columns,
-            texel: 2.0 / f64::from(px - 2 * GUARD_PX * taps.isqrt()),
+            texel: 2.0 / f64::from(px - 2 * guard),
             taps: f64::from(taps.isqrt()),
-            squares: 0,
-            faces: Vec::new(),
+            soft_taps: model.look_ups() / 2,
+            are_curved: model.is_curved(),
+            squares: sunny.squares(),
+            faces: sun_faces,
             maps: Vec::new(),
         };
         // The farthest texel centre that a look-up reads, along one axis and in all.
@@ -214,7 +191,7 @@ impl Plan {
                     light: ix,
                     first_map: first + planner.maps.len(),
                     first_face: planner.faces.len(),
-                    face_count: reach.face_count(),
+                    face_count: reach.face_count(false),
                     turned: turned(axes_of(light)),
                 });
                 // Any point of the rectangle may take a place, so each reaches as far as a corner does.
@@ -222,8 +199,10 @@ impl Plan {
                 records.extend(planner.add(light, waiting, first));
                 continue;
             }
+            let count = maps_of(light, maps) as u32;
             let points = match &light.shape {
-                LightShape::Area(emitter) => points_of(emitter, maps_of(light, maps) as u32),
+                LightShape::Area(emitter) if model.is_soft() => middles_of(emitter, count),
+                LightShape::Area(emitter) => points_of(emitter, count),
                 LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => {
                     vec![LightPoint::MIDDLE]
                 }
@@ -231,10 +210,11 @@ impl Plan {
             records.extend(planner.add(light, points, first));
         }
         records.append(&mut planner.maps);
-        let map_count = ((records.len() - first) / 3) as u32;
+        let vectors = if model.is_soft() { 3 + PATCH_VECTORS } else { 3 };
+        let map_count = ((records.len() - first) / vectors) as u32;
         // Depth differs by at most one greatest difference along each of the two axes.
         let slopes = (2.0 * across) as f32;
-        Ok(Self { records, faces: planner.faces, size, slopes, maps, map_count, sites })
+        Self { records, faces: planner.faces, size, slopes, maps, map_count, sites, suns }
     }
 }
 
@@ -246,6 +226,10 @@ struct Planner {
     texel: f64,
     /// Texels on a side of the filter.
     taps: f64,
+    /// Look-ups of a soft filter; 0 without one.
+    soft_taps: u32,
+    /// Whether faces are paraboloids, where they are no cones.
+    are_curved: bool,
     /// Squares that are taken.
     squares: u32,
     faces: Vec<Face>,
@@ -264,13 +248,17 @@ impl Planner {
         for point in &points {
             // Faces and shading start from the same rounded position.
             let eye = (light.position.as_dvec3() + point.offset).as_vec3();
-            let reach_m = f64::from(light.radius_m()) + point.offset.length();
+            let widest = if self.soft_taps > 0 { WIDEST_SEARCH } else { 1.0 };
+            let reach_m = widest * (f64::from(light.radius_m()) + point.offset.length());
             let faces = self.faces(reach, axes, eye, (near_m, reach_m));
             self.maps.extend([
                 point_record(eye, point.weight),
                 [faces[0], faces[1], faces[2], faces[3]],
-                [faces[4], faces[5], bits(near_m * (1.0 + DEPTH_SLACK)), 0],
+                [faces[4], faces[5], bits(near_m * (1.0 + DEPTH_SLACK)), self.soft_taps],
             ]);
+            if self.soft_taps > 0 {
+                self.maps.extend(patch_of(light, points.len() as u32, axes));
+            }
         }
         let (spread, half) = match reach {
             Reach::Cone(tangent) => (tangent, 0),
@@ -291,9 +279,13 @@ impl Planner {
     ) -> [u32; FACES] {
         let px = self.px;
         let mut places = [0; FACES];
-        let turned = turned(axes).into_iter().take(reach.face_count());
+        let is_curved = self.are_curved && !matches!(reach, Reach::Cone(_));
+        let all = turned(axes);
+        // The second paraboloid looks backwards.
+        let turned = if is_curved { vec![all[0], all[FACES - 1]] } else { all.to_vec() };
+        let turned = turned.into_iter().take(reach.face_count(is_curved));
         for (ix, (right, down, forward)) in turned.enumerate() {
-            let is_half = reach == Reach::Half && ix > 0;
+            let is_half = !is_curved && reach == Reach::Half && ix > 0;
             // The second of two halves lies below the first.
             let below = is_half && ix % 2 == 0;
             let square = if below { self.squares - 1 } else { self.squares };
@@ -310,6 +302,7 @@ impl Planner {
                 size: [px, if is_half { px / 2 } else { px }],
                 eye,
                 reach_m: (reach_m * beyond(texel, self.taps)) as f32,
+                is_curved,
             });
             places[ix] = origin[0] | origin[1] << 16;
         }
@@ -328,37 +321,9 @@ pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
     [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
 }
 
-/// What `shadow.wesl` calls `SPHERE` and `LINE`; 0 for other lights.
-pub(super) fn round_spread(light: &Light) -> f64 {
-    let LightShape::Area(emitter) = &light.shape else { return 0.0 };
-    match emitter.outline() {
-        Outline::Sphere => -1.0,
-        Outline::Line => -2.0,
-        Outline::Rectangle | Outline::Polygon | Outline::Disc => 0.0,
-    }
-}
-
 /// Single precision, as bits.
-fn bits(value: f64) -> u32 {
+pub(super) fn bits(value: f64) -> u32 {
     (value as f32).to_bits()
-}
-
-/// Unit axes of a light, world space. z is its direction or normal, if it has one.
-pub(super) fn axes_of(light: &Light) -> DMat3 {
-    let around = |z: DVec3| {
-        let z = z.normalize_or(DVec3::Z);
-        let x = z.any_orthonormal_vector();
-        DMat3::from_cols(x, z.cross(x), z)
-    };
-    match &light.shape {
-        LightShape::Point => DMat3::IDENTITY,
-        LightShape::Spot { direction, .. } => around(direction.as_dvec3()),
-        LightShape::Vpl { normal, .. } => around(normal.as_dvec3()),
-        LightShape::Area(emitter) if emitter.outline() == Outline::Line => {
-            around(emitter.half_axes()[0].as_dvec3())
-        }
-        LightShape::Area(emitter) => around(emitter.normal().as_dvec3()),
-    }
 }
 
 #[cfg(test)]

@@ -46,8 +46,9 @@ use bytemuck::cast_slice;
 
 use super::{
     ShadowFigures, check_device, check_known,
-    plan::{axes_of, axes_record, point_record, round_spread},
+    plan::{axes_record, point_record},
     points::{LightPoint, points_of},
+    reach::{axes_of, round_spread},
 };
 use crate::{ShadingError, ShadowModel, WorldTriangles, bound_shadows::BoundRays};
 
@@ -98,7 +99,7 @@ impl ShadowRays {
         (triangles, settings): (&WorldTriangles, DeepImageSettings),
     ) -> Result<Self, ShadingError> {
         check_device(gpu, "shading with rays through deep images", STORAGE_BUFFERS)?;
-        check_known(lights, model)?;
+        check_known(model, lights)?;
         model.check()?;
         let records = records(lights.lights(), model.maps());
         let bytes: &[u8] = cast_slice(&records);

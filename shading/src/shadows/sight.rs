@@ -23,7 +23,9 @@ impl Sight {
         let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
         let eye = face.eye.as_dvec3();
         let reach_m = f64::from(face.reach_m) * f64::from(ranges.max(1.0));
-        Self { planes: [w + x, w - x, w + y, w - y, w], eye, reach_m }
+        // A paraboloid sees half the space, and what reaches into it.
+        let planes = if face.is_curved { [DVec4::W; 5] } else { [w + x, w - x, w + y, w - y, w] };
+        Self { planes, eye, reach_m }
     }
 
     /// Whether a box may be seen, world space.
@@ -49,12 +51,15 @@ mod tests {
     use glam::Mat4;
 
     use super::*;
-    use crate::{ShadowModel, shadows::plan::Plan};
+    use crate::{
+        ShadowModel,
+        shadows::{SunnyScene, plan::Plan},
+    };
 
     fn faces() -> Vec<Face> {
         let light = Light::point(Vec3::new(1.0, 2.0, 3.0), 4.0, Vec3::ONE);
         let model = ShadowModel::Maps { maps: 1, px: 128, taps: 1 };
-        Plan::new(&[light], model, 4096).expect("a plan").faces
+        Plan::new(&[light], SunnyScene::default(), model, 4096).expect("a plan").faces
     }
 
     /// The faces that may see a box of 2 cm at a place relative to the light.

@@ -24,18 +24,9 @@ impl Views {
         let size = size_of::<ViewUniform>();
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
         let stride = (size as u32).next_multiple_of(alignment.max(1));
-        let mut bytes = vec![0; stride as usize * faces.len().max(1)];
-        for (slot, face) in bytes.chunks_mut(stride as usize).zip(faces) {
-            let view = ViewUniform {
-                world_to_view: face.world_to_view.to_cols_array_2d(),
-                view_to_clip: face.view_to_clip.to_cols_array_2d(),
-                ..ViewUniform::zeroed()
-            };
-            slot[..size].copy_from_slice(bytes_of(&view));
-        }
+        let bytes = u64::from(stride) * faces.len().max(1) as u64;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let buffer = gpu.buffer("views of shadow maps", bytes.len() as u64, usage)?;
-        gpu.queue.write_buffer(&buffer, 0, &bytes);
+        let buffer = gpu.buffer("views of shadow maps", bytes, usage)?;
         let layout = gpu.bind_group_layout(
             "shadow maps",
             &[wgpu::BindGroupLayoutEntry {
@@ -61,6 +52,22 @@ impl Views {
                 }),
             }],
         });
-        Ok((Self { buffer, group, stride }, layout))
+        let views = Self { buffer, group, stride };
+        views.write(gpu, faces);
+        Ok((views, layout))
+    }
+
+    /// Uploads the views of faces, at most as many as there were at first.
+    pub(super) fn write(&self, gpu: &Gpu, faces: &[Face]) {
+        let mut bytes = vec![0; self.stride as usize * faces.len()];
+        for (slot, face) in bytes.chunks_mut(self.stride as usize).zip(faces) {
+            let view = ViewUniform {
+                world_to_view: face.world_to_view.to_cols_array_2d(),
+                view_to_clip: face.view_to_clip.to_cols_array_2d(),
+                ..ViewUniform::zeroed()
+            };
+            slot[..size_of::<ViewUniform>()].copy_from_slice(bytes_of(&view));
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, &bytes);
     }
 }

@@ -33,6 +33,28 @@ fn lighting_with_shadows_reads_the_maps() {
             assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root}: {used:?}");
         }
     }
+    // Soft filters read the same, in look-ups of surfaces and in the open.
+    for (root, flags) in [
+        ("package::deferred", ["areas", "area_point", "shadows", "pcss"]),
+        ("package::fog_light", ["areas", "area_point", "shadows", "pcss"]),
+        ("package::fog_light", ["areas", "area_point", "spots", "shadows"]),
+    ] {
+        let used = link(root, &Flags::from(flags), Some(LOOK_UPS[0])).used(2);
+        assert!(MAPS.iter().all(|binding| used.contains(binding)), "{root} {flags:?}: {used:?}");
+    }
+    for flags in [&["to_paraboloid"][..], &["to_paraboloid", "mask", "base_color_texture"]] {
+        let linked = link("package::geometry", &flags.iter().copied().collect(), None);
+        assert!(linked.entry_points.contains("fragment_paraboloid"), "{flags:?}");
+    }
+    let curved = Flags::from(["areas", "area_point", "shadows", "paraboloids"]);
+    assert!(link("package::deferred", &curved, Some(LOOK_UPS[0])).used(2).contains(&MAPS[0]));
+    // Suns have maps of their own, in lights' shadows only.
+    let sunny = link("package::deferred", &Flags::from(["suns", "shadows"]), Some(LOOK_UPS[0]));
+    assert!([10, 26, 27, 30].iter().all(|binding| sunny.used(2).contains(binding)));
+    let sunny = link("package::fog_light", &Flags::from(["suns", "shadows"]), Some(LOOK_UPS[0]));
+    assert!([10, 26, 27, 30].iter().all(|binding| sunny.used(2).contains(binding)));
+    let plain = link("package::deferred", &Flags::from(["suns"]), Some(LOOK_UPS[0]));
+    assert!(!plain.source.contains("shadow") && !plain.used(2).contains(&30));
     // The test for bands reads depth, normals and maps, whatever the options of lighting are.
     let used = link("package::shadow_banding", &Flags::new(), None).used(2);
     assert_eq!(used, [0, 2, MAPS[0], MAPS[1], 28, 29]);

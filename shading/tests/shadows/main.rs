@@ -7,9 +7,14 @@ mod adaptive;
 #[path = "../common/mod.rs"]
 mod common;
 mod errors;
+mod layers;
+mod moved;
 mod occlusion;
+mod paraboloids;
+mod pcss;
 mod rays;
 mod strategies;
+mod suns;
 mod truth;
 mod walls;
 

@@ -258,6 +258,12 @@ fn what_hides_lights_needs_maps_and_strategies_need_it() {
     assert!(error.contains("needs occluders, which the frame lacks"), "{error}");
     renderer.find_occluders(OccluderDepth::Farthest).unwrap();
     strategy.prepare(&gpu, &renderer.frame(&at, &lights)).unwrap();
+    // Soft filters read beside what the test looks at.
+    let soft = ShadowModel::Pcss { maps: 1, px: 64, taps: 4 };
+    let mut other = Renderer::new(&gpu, &rooms(), &view()).unwrap();
+    other.cast_shadows(&lights, soft).unwrap();
+    let error = other.find_occluders(OccluderDepth::Farthest).unwrap_err().to_string();
+    assert!(error.contains("cannot serve shadow model maps:1,64,pcss4"), "{error}");
     // New maps have none.
     renderer.cast_shadows(&lights, maps(1, 64, 1)).unwrap();
     assert!(renderer.frame(&at, &lights).occluders.is_none());

@@ -29,7 +29,11 @@ pub(crate) fn maps(record: &Record) -> Option<Maps> {
         ShadowModel::Maps { px, taps, .. } => {
             Some(Maps { maps: setting.maps_per_area_light, px, taps })
         }
-        ShadowModel::None | ShadowModel::Adaptive { .. } | ShadowModel::Cdi { .. } => None,
+        ShadowModel::None
+        | ShadowModel::Adaptive { .. }
+        | ShadowModel::Pcss { .. }
+        | ShadowModel::Paraboloids { .. }
+        | ShadowModel::Cdi { .. } => None,
     }
 }
 

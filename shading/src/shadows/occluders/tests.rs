@@ -4,7 +4,10 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::*;
-use crate::{ShadowModel, shadows::plan::Plan};
+use crate::{
+    ShadowModel,
+    shadows::{SunnyScene, plan::Plan},
+};
 
 /// The rules of `pyramid.wesl`.
 fn origin([width, height]: [u32; 2], level: u32) -> [u32; 2] {
@@ -107,7 +110,7 @@ fn look_ups_stay_inside_the_footprint_of_their_box() {
     for (light, tangent) in [(point, 1.0), (Light { shape, ..point }, 1.0_f64.tan())] {
         for (px, taps) in [(32, 25), (128, 1), (512, 9)] {
             let model = ShadowModel::Maps { maps: 1, px, taps };
-            let plan = Plan::new(&[light], model, 4096).expect("a plan");
+            let plan = Plan::new(&[light], SunnyScene::default(), model, 4096).expect("a plan");
             let boxes: Vec<[Vec3; 2]> = (0..512)
                 .map(|_| {
                     let mut number = || rng.random::<f32>();

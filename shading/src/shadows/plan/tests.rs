@@ -31,7 +31,8 @@ fn lights() -> Vec<Light> {
 #[test]
 fn faces_lie_in_the_atlas_and_share_no_texel() {
     for (maps, px, taps) in [(1, 32, 25), (4, 64, 1), (25, 32, 9)] {
-        let plan = Plan::new(&lights(), model(maps, px, taps), 4096).unwrap();
+        let plan =
+            Plan::new(&lights(), SunnyScene::default(), model(maps, px, taps), 4096).unwrap();
         assert_eq!(plan.maps, maps);
         assert_eq!(plan.map_count, 2 * maps + 4);
         // 5 and 6 faces of the area lights, 1, 5 and 6 of the spots, 5 of the virtual point light.
@@ -67,8 +68,14 @@ fn seen(face: &Face, point: Vec3) -> Option<(f32, f32, f32)> {
 
 #[test]
 fn the_faces_of_a_map_see_every_point_that_the_light_reaches() {
-    let plan = Plan::new(&[square(Vec3::Y * 3.0)], model(1, 64, 1), 4096).unwrap();
-    let point = Plan::new(&[Light::point(Vec3::ONE, 8.0, Vec3::ONE)], model(1, 64, 1), 4096);
+    let plan =
+        Plan::new(&[square(Vec3::Y * 3.0)], SunnyScene::default(), model(1, 64, 1), 4096).unwrap();
+    let point = Plan::new(
+        &[Light::point(Vec3::ONE, 8.0, Vec3::ONE)],
+        SunnyScene::default(),
+        model(1, 64, 1),
+        4096,
+    );
     let point = point.unwrap();
     for ix in 0..2000 {
         let f = ix as f32;
@@ -83,7 +90,7 @@ fn the_faces_of_a_map_see_every_point_that_the_light_reaches() {
 #[test]
 fn depth_is_near_over_distance_and_faces_have_a_guard() {
     let light = Light::point(Vec3::new(1.0, 2.0, 3.0), 8.0, Vec3::ONE);
-    let plan = Plan::new(&[light], model(1, 64, 9), 4096).unwrap();
+    let plan = Plan::new(&[light], SunnyScene::default(), model(1, 64, 9), 4096).unwrap();
     let forward = plan.faces[0];
     let (x, y, depth) = seen(&forward, light.position + Vec3::new(0.0, 0.0, 2.0)).unwrap();
     assert!((x - 32.0).abs() < 1e-4 && (y - 32.0).abs() < 1e-4, "{x} {y}");
@@ -98,21 +105,22 @@ fn depth_is_near_over_distance_and_faces_have_a_guard() {
 fn an_atlas_that_is_too_small_gets_fewer_maps_or_is_refused() {
     let lights = vec![square(Vec3::ZERO); 4];
     // 16 x 16 squares. Four lights take 12 of them per map.
-    let plan = Plan::new(&lights, model(81, 64, 1), 1024).unwrap();
+    let plan = Plan::new(&lights, SunnyScene::default(), model(81, 64, 1), 1024).unwrap();
     assert_eq!((plan.maps, plan.map_count), (9, 36));
     assert!(plan.size[0] <= 1024 && plan.size[1] <= 1024);
-    let whole = Plan::new(&lights, model(81, 64, 1), 2048).unwrap();
+    let whole = Plan::new(&lights, SunnyScene::default(), model(81, 64, 1), 2048).unwrap();
     assert_eq!(whole.maps, 81);
     // 12 squares do not fit 3 x 3.
-    let error = Plan::new(&lights, model(4, 64, 1), 192).unwrap_err().to_string();
+    let error =
+        Plan::new(&lights, SunnyScene::default(), model(4, 64, 1), 192).unwrap_err().to_string();
     assert!(
         error.starts_with("shadow model is maps:4,64 for 4 lights: it must be one whose maps fit"),
         "{error}"
     );
-    assert!(Plan::new(&lights, model(4, 512, 1), 256).is_err());
-    assert!(Plan::new(&lights, ShadowModel::None, 256).is_err());
-    assert!(Plan::new(&lights, model(5, 64, 1), 4096).is_err());
-    let none = Plan::new(&[], model(4, 64, 1), 4096).unwrap();
+    assert!(Plan::new(&lights, SunnyScene::default(), model(4, 512, 1), 256).is_err());
+    assert!(Plan::new(&lights, SunnyScene::default(), ShadowModel::None, 256).is_err());
+    assert!(Plan::new(&lights, SunnyScene::default(), model(5, 64, 1), 4096).is_err());
+    let none = Plan::new(&[], SunnyScene::default(), model(4, 64, 1), 4096).unwrap();
     assert_eq!((none.map_count, none.size), (0, [64, 64]));
 }
 
@@ -125,7 +133,7 @@ fn rectangles_that_frames_subdivide_get_places_and_others_a_fixed_number() {
     lights.push(Light::area(polygon, middle, 10.0, Vec3::ONE));
     lights.push(spot(0.5));
     lights.push(square(Vec3::ONE));
-    let plan = Plan::new(&lights, model(24), 4096).unwrap();
+    let plan = Plan::new(&lights, SunnyScene::default(), model(24), 4096).unwrap();
     assert_eq!((plan.maps, plan.map_count), (24, 3 * 24 + 9 + 1));
     let sites: Vec<usize> = plan.sites.iter().map(|site| site.light).collect();
     assert_eq!(sites, [0, 1, 4]);
@@ -144,10 +152,10 @@ fn rectangles_that_frames_subdivide_get_places_and_others_a_fixed_number() {
         assert!((offset - from).abs() < 1e-4, "{offset} {from}");
     }
     // 16 x 16 squares: three lights take 9 of them for each map, the polygon 27, and the spot 1.
-    let plan = Plan::new(&lights, model(289), 1024).unwrap();
+    let plan = Plan::new(&lights, SunnyScene::default(), model(289), 1024).unwrap();
     assert_eq!((plan.maps, plan.map_count), (24, 3 * 24 + 9 + 1));
     assert!(plan.size[0] <= 1024 && plan.size[1] <= 1024);
-    let error = Plan::new(&lights, model(289), 320).unwrap_err().to_string();
+    let error = Plan::new(&lights, SunnyScene::default(), model(289), 320).unwrap_err().to_string();
     assert!(
         error.contains("4 for each area light and one for each other light take 49 squares"),
         "{error}"
