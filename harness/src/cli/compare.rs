@@ -89,12 +89,11 @@ pub struct CompareArgs {
 
     /// How lights are shadowed
     ///
-    /// With maps:N,PX each area light has shadow maps from N of its points, 1, 4, 9, 25, 81 or 289, with faces of PX
-    /// texels on a side, even, 32 to 4096; each other light has one map. pcfK compares K texels of a map, 1, 4, 9, 16
-    /// or 25; pcssK blurs as widely as the penumbra is by K look-ups, 4, 9, 16, 25, 49 or 81. paraboloid maps half the space
-    /// into one square, wrongly for large triangles. adaptive:PX,DOWN,MOST divides rectangles where the view shows bands,
-    /// tested at 1/DOWN of its size, 1, 2, 4, 8 or 16, up to MOST maps, 4 to 289. cdi:N casts N rays through deep images,
-    /// as many as maps or 16. maps: serves lights that the CPU moves, on the clock.
+    /// maps:N,PX draws N maps of each area light, 1, 4, 9, 25, 81 or 289, and one of each other light, with faces of PX
+    /// texels, even, 32 to 4096. pcfK compares K texels, 1, 4, 9, 16 or 25. pcssK blurs as widely as the penumbra is, by
+    /// K look-ups, 4, 9, 16, 25, 49 or 81. paraboloid is wrong for large triangles. adaptive:PX,DOWN,MOST divides
+    /// rectangles where the view shows bands, tested at 1/DOWN, 1, 2, 4, 8 or 16, with MOST of 4 to 289 maps. cdi:N casts N
+    /// rays through deep images, as many as maps or 16.
     #[arg(long, value_name = "none|maps:N,PX[,pcfK|,pcssK|,paraboloid]|adaptive:PX,DOWN,MOST|cdi:N", default_value = "none", value_parser = values::shadow_model, help_heading = SHADING, hide_short_help = true)]
     pub shadows: ShadowModel,
 

@@ -68,3 +68,8 @@ pub(super) fn view_to_clip(side: f64, rows: [f64; 2], near_m: f64) -> Mat4 {
         Vec4::new(0.0, 0.0, near_m as f32, 0.0),
     )
 }
+
+/// Single precision, as bits.
+pub(super) fn bits(value: f64) -> u32 {
+    (value as f32).to_bits()
+}

@@ -41,7 +41,7 @@ use assign::{Emitter, Light, LightShape, Outline};
 use glam::{DMat3, DVec3, Vec3};
 
 use super::{
-    plan::bits,
+    face::bits,
     points::{LightPoint, points_of},
 };
 

@@ -4,7 +4,7 @@ use assign::{AssignError, Light, LightShape, Outline};
 use glam::{DMat3, DVec3, Mat4, Vec3};
 
 use super::{
-    face::{FACES, Face, across, beyond, turned, view_to_clip, world_to_view},
+    face::{FACES, Face, across, beyond, bits, turned, view_to_clip, world_to_view},
     patch::{PATCH_VECTORS, WIDEST_SEARCH, middles_of, patch_of},
     points::{LightPoint, points_of},
     reach::{Reach, axes_of, round_spread},
@@ -319,11 +319,6 @@ pub(super) fn axes_record(axes: DMat3, first: u32, count: u32, spread: f64) -> [
 /// The first vector of a map: its point, and the weight of that.
 pub(super) fn point_record(eye: Vec3, weight: u32) -> [u32; 4] {
     [eye.x.to_bits(), eye.y.to_bits(), eye.z.to_bits(), weight]
-}
-
-/// Single precision, as bits.
-pub(super) fn bits(value: f64) -> u32 {
-    (value as f32).to_bits()
 }
 
 #[cfg(test)]
