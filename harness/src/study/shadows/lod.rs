@@ -114,7 +114,7 @@ fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
 }
 
 fn table(all: &[Entry<'_>]) -> Html {
-    fn errors_of<'r>(record: &'r Record) -> &'r Errors {
+    fn errors_of(record: &Record) -> &Errors {
         &record.image.truth_errors
     }
     let row = |entry: &Entry<'_>| {

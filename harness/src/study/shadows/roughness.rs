@@ -116,7 +116,7 @@ fn chart(scene: &str, all: &[(f64, &TruthImage)], charts: &mut Charts) -> Html {
 }
 
 fn table(all: &[(f64, &TruthImage)]) -> Html {
-    fn errors_of<'r>(image: &'r TruthImage) -> &'r Errors {
+    fn errors_of(image: &TruthImage) -> &Errors {
         &image.against_errors
     }
     let row = |(roughness, image): &(f64, &TruthImage)| {
