@@ -113,10 +113,8 @@ impl Stage {
     fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open_seeded(&args.scene, args.seed)?;
         let unscaled_m = scene.core_bounds.diagonal();
-        let mut scene = scene.scaled(args.scene_scale)?.replicated(args.replicate)?;
-        if let Some(roughness) = args.roughness {
-            scene = scene.with_roughness(roughness)?;
-        }
+        let scene = scene.scaled(args.scene_scale)?.replicated(args.replicate)?;
+        let mut scene = scene.with_roughness(args.roughness)?;
         if args.bounce.is_on() {
             // Only the primary light may light the image, as in the truth.
             scene = scene.without_emission();

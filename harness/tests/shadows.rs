@@ -145,6 +145,7 @@ fn options_that_rays_do_not_take_are_refused() {
         ("--shadows cdi:4 --oversampling 2", "1 for --build per-direction-batched"),
         ("--shadows cdi:4 --light-order gpu", "none with --light-order gpu"),
         ("--shadows cdi:4 --motion drift", "none with --motion"),
+        ("--shadows cdi:4 --vpls 16", "none with --vpls"),
         ("--shadows cdi:4 --fog 0.1", "none with --transparent, --particles and --fog"),
         (
             "--shadows maps:4,64 --deep-size 64",

@@ -268,11 +268,13 @@ impl Scene {
     }
 
     /// The scene with one roughness on all surfaces, and without metal: textures of roughness and metalness are left out.
+    /// `None` keeps the scene as it is.
     ///
     /// # Errors
     ///
     /// [`SceneError::OutOfRange`] unless `roughness` is within 0..=1.
-    pub fn with_roughness(mut self, roughness: f64) -> Result<Self, SceneError> {
+    pub fn with_roughness(mut self, roughness: Option<f64>) -> Result<Self, SceneError> {
+        let Some(roughness) = roughness else { return Ok(self) };
         if !(0.0..=1.0).contains(&roughness) {
             return Err(SceneError::OutOfRange {
                 field: "roughness",

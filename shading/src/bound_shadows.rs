@@ -55,8 +55,17 @@ impl ShadowKind {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundRays {
     pub(crate) model: ShadowModel,
+    /// How far from their lights samples may lie whose rays the loop guard counts, in ranges of the lights.
+    pub(crate) ranges: f32,
     pub(crate) records: wgpu::Buffer,
     pub(crate) images: RayBuffers,
+}
+
+impl BoundRays {
+    /// Whether shaders that bind these read the points and the images of `other`. Each cast makes its own.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.model == other.model && self.records == other.records
+    }
 }
 
 /// Shadows as shaders read them.
@@ -75,11 +84,11 @@ impl BoundShadows {
         }
     }
 
-    /// How far from their lights samples may lie that they serve, in ranges of the lights. Deep images hold the whole scene.
+    /// How far from their lights samples may lie that they serve, in ranges of the lights.
     pub(crate) fn ranges(&self) -> f32 {
         match self {
             Self::Maps(maps) => maps.ranges(),
-            Self::Rays(_) => f32::INFINITY,
+            Self::Rays(rays) => rays.ranges,
         }
     }
 

@@ -102,6 +102,7 @@ fn evaluate(
     let stages = wgpu::ShaderStages::COMPUTE;
     let images = GBufferInputs::of_scene(&renderer.scene);
     let inputs = LightingInputs::new(gpu, options, renderer.shadows.bound())?;
+    renderer.check_bound_shadows(inputs.shadows(), false)?;
     let mut layout = vec![
         uniform_entry(PIXEL_BINDING, stages),
         storage_entry(ENTRIES_BINDING, stages, true),

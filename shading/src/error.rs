@@ -73,8 +73,8 @@ pub enum ShadingError {
     },
     /// The prepared lights are not those that shadow maps were drawn for.
     #[error(
-        "the shadow maps were drawn for other lights: draw them again with Renderer::cast_shadows, and create a new \
-         pass. If lights move, call Renderer::move_shadows before Renderer::prepare, and record the maps in each \
+        "the shadows were cast for other lights, or maps were not drawn: cast them again with Renderer::cast_shadows, and \
+         create a new pass. If lights with maps move, call Renderer::move_shadows before Renderer::prepare, and record the maps in each \
          frame (Renderer::record_shadow_maps, record_occluders)"
     )]
     StaleShadows,

@@ -149,7 +149,7 @@ impl Lighting {
             return Err(ShadingError::Layers { made, drawn: renderer.layer_kinds() });
         }
         lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
-        renderer.check_maps(self.shadows.as_ref(), strategy.needs().occluders)?;
+        renderer.check_bound_shadows(self.shadows.as_ref(), strategy.needs().occluders)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(Forward { pipelines, orientation, scene, has_depth }) => {

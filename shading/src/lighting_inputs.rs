@@ -232,6 +232,9 @@ fn bound_shadows(
         Some(maps) if maps.model() != options.shadows => {
             refuse(format!("{}, the model of the renderer's shadows, or none", maps.model()))
         }
+        Some(BoundShadows::Rays(_)) if !options.suns.is_empty() => {
+            refuse("none with suns, or one with maps: no rays are cast to suns".into())
+        }
         Some(maps) if maps.suns() != options.suns => refuse(
             "none with other suns than those of Renderer::cast_shadows_of_suns before Renderer::cast_shadows".into(),
         ),

@@ -121,7 +121,7 @@ impl RasterSpheres {
         if self.orientation != renderer.orientation {
             return Err(ShadingError::Orientation);
         }
-        renderer.check_maps(self.inputs.shadows(), false)?;
+        renderer.check_bound_shadows(self.inputs.shadows(), false)?;
         // Each fragment adds only one light, so each is checked separately.
         let ray_rounds = renderer.shadows.ray_rounds();
         for light in LightTotals::of_each(lights) {

@@ -20,9 +20,6 @@ const STARTS: u32 = 3;
 const DEPTHS: u32 = 4;
 
 impl RayBuffers {
-    /// Bindings that they take, from the first.
-    pub const BINDINGS: u32 = 5;
-
     /// The settings of the images.
     pub fn settings(&self) -> &DeepImageSettings {
         &self.settings

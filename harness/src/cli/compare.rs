@@ -74,8 +74,6 @@ pub struct CompareArgs {
     pub area_model: Option<AreaModel>,
 
     /// Light by a point each area light that looks smaller than X steradians, 1e-9 to 6: lossy
-    ///
-    /// On surfaces smoother than a roughness of 0.71, X shrinks with the specular lobe.
     #[arg(long, value_name = "X", value_parser = values::number_from(1e-9, 6.0), allow_hyphen_values = true, help_heading = SHADING, hide_short_help = true, conflicts_with = "operations")]
     pub area_lod: Option<f64>,
 
@@ -123,9 +121,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_FRAMES), help_heading = TIMING, hide_short_help = true)]
     pub warmup: Option<u32>,
 
-    /// With --path or --motion, laps of --frames frames each, 1 to 1,000 [default: 1]
-    ///
-    /// The test for ties needs 6 laps.
+    /// Laps of --frames frames each with --path or --motion, 1 to 1,000; ties need 6 [default: 1]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, 1_000), help_heading = TIMING, hide_short_help = true)]
     pub laps: Option<u32>,
 

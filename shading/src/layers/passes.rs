@@ -121,7 +121,7 @@ fn fog_light(
         .set_flags(lighting_modules(LISTS_GROUP))
         .strategy(lookup.module)
         .looks_up_anywhere();
-    // SAFETY: its loops count up to the number of suns or vertices, or end with the strategy's look-up, which
+    // SAFETY: its loops count up to the number of suns, vertices, maps or texels, or end with the strategy's look-up, which
     // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do, and the
     // strategy's author guarantees it of its own.
     #[allow(unsafe_code, reason = "its loops end")]

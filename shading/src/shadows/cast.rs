@@ -15,7 +15,8 @@ impl Renderer {
     /// maps.
     ///
     /// With [`ShadowModel::Cdi`] there are no maps: it places points on the lights, and builds deep images of the scene
-    /// ([`cast_rays_through`](Self::cast_rays_through)). All else holds alike.
+    /// ([`cast_rays_through`](Self::cast_rays_through)). All else holds alike, but suns cast no
+    /// shadows then, and are refused.
     ///
     /// Returns what was made; `None` without shadows. If the maps that the model asks for do not fit the largest atlas
     /// of the device, all area lights get fewer, and [`ShadowFigures::fell_back`] says so.
@@ -158,18 +159,27 @@ impl Renderer {
     /// [`cast_shadows`](Self::cast_shadows). It plans the maps on the CPU and uploads their places, through the queue: call it
     /// once per submission, before [`prepare`](Self::prepare). Then record [`record_shadow_maps`](Self::record_shadow_maps),
     /// and [`record_occluders`](Self::record_occluders) for strategies that ask what hides lights, before the strategy's
-    /// passes. [`Lighting`](crate::Lighting) stays the same. Does nothing without maps, and if no light has changed.
+    /// passes. [`Lighting`](crate::Lighting) stays the same. Returns whether the maps moved: not without shadows, and not if
+    /// no light has changed.
     ///
     /// The atlas keeps its size. Cast shadows for as many lights as any frame has.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Unsupported`] for lights that the GPU moves, makes or orders, and for models that frames subdivide.
-    /// [`AssignError::Parameter`] if the lights need a larger atlas than those for which shadows were cast. The maps then
+    /// [`AssignError::Unsupported`] for lights that the GPU moves, makes or orders, for models that frames subdivide, and
+    /// for rays. [`AssignError::Parameter`] if the lights need a larger atlas than those for which shadows were cast. The maps then
     /// stay as they are.
-    pub fn move_shadows(&mut self, lights: &LightBuffer) -> Result<(), ShadingError> {
+    pub fn move_shadows(&mut self, lights: &LightBuffer) -> Result<bool, ShadingError> {
         let Self { gpu, shadows, .. } = self;
-        shadows.maps.as_mut().map_or(Ok(()), |maps| maps.follow(gpu, lights))
+        if let Some(rays) = shadows.rays.as_ref().filter(|rays| rays.lights() != lights.lights()) {
+            return Err(AssignError::Unsupported {
+                strategy: format!("shadow model {}", rays.figures().model),
+                asked: "lights that move".into(),
+                reason: "the points of its rays stay: cast shadows again, or use maps:N,PX".into(),
+            }
+            .into());
+        }
+        shadows.maps.as_mut().map_or(Ok(false), |maps| maps.follow(gpu, lights))
     }
 
     /// Records the pass `shadow-maps`, which draws all maps again. With rays, it records the passes that build the deep images
@@ -192,19 +202,24 @@ impl Renderer {
         }
     }
 
-    /// Refuses shaders that read other maps than the renderer's, and maps that were not drawn for the present lights.
+    /// Refuses shaders that read other shadows than the renderer's, and maps that were not drawn for the present lights.
     /// `asks_occluders`: lists were made by what hides lights.
-    pub(crate) fn check_maps(
+    pub(crate) fn check_bound_shadows(
         &self,
         bound: Option<&BoundShadows>,
         asks_occluders: bool,
     ) -> Result<(), ShadingError> {
-        let Some(BoundShadows::Maps(bound)) = bound else { return Ok(()) };
-        let is_current = self.shadows.maps.as_ref().is_some_and(|maps| {
-            maps.is_drawn()
-                && maps.bound().is_same(bound)
-                && (!asks_occluders || maps.has_occluders())
-        });
+        let is_current = match bound {
+            None => true,
+            Some(BoundShadows::Maps(bound)) => self.shadows.maps.as_ref().is_some_and(|maps| {
+                maps.is_drawn()
+                    && maps.bound().is_same(bound)
+                    && (!asks_occluders || maps.has_occluders())
+            }),
+            Some(BoundShadows::Rays(bound)) => {
+                self.shadows.rays.as_ref().is_some_and(|rays| rays.bound().is_same(bound))
+            }
+        };
         if is_current { Ok(()) } else { Err(ShadingError::StaleShadows) }
     }
 

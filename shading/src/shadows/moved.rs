@@ -11,17 +11,18 @@ use super::{ShadowMaps, plan::Plan};
 use crate::{ShadingError, ShadowModel};
 
 impl ShadowMaps {
-    /// Plans the maps for other lights, and uploads where they look. They must be drawn again.
+    /// Plans the maps for other lights, and uploads where they look. They must be drawn again. Returns false if the lights
+    /// are those that the maps are for.
     ///
     /// # Errors
     ///
     /// [`AssignError::Unsupported`] for lights that the CPU does not know and for models that frames subdivide, and
     /// [`AssignError::Parameter`] if the atlas is too small. The maps then stay as they are.
-    pub(crate) fn follow(&mut self, gpu: &Gpu, lights: &LightBuffer) -> Result<(), ShadingError> {
+    pub(crate) fn follow(&mut self, gpu: &Gpu, lights: &LightBuffer) -> Result<bool, ShadingError> {
         let model = self.asked.model;
         check_known(model, lights)?;
         if lights.lights() == self.lights {
-            return Ok(());
+            return Ok(false);
         }
         if model.is_adaptive() {
             return Err(AssignError::Unsupported {
@@ -65,7 +66,7 @@ impl ShadowMaps {
         self.lights.clear();
         self.lights.extend_from_slice(lights.lights());
         (self.is_drawn, self.has_occluders) = (false, false);
-        Ok(())
+        Ok(true)
     }
 }
 

@@ -114,7 +114,7 @@ impl ShadowRays {
                 bounds_world: triangles.bounds_world,
             },
         )?;
-        let bound = BoundRays { model, records: buffer, images: images.ray_buffers()? };
+        let bound = BoundRays { model, ranges, records: buffer, images: images.ray_buffers()? };
         let reach_m = lights.lights().iter().map(|light| {
             f64::from(light.range_m) * f64::from(ranges) + f64::from(light.radius_m())
         });

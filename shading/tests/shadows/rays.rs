@@ -1,11 +1,11 @@
 //! Rays through deep images in place of maps: against the truth, and where they must show nothing.
 
-use assign::{Light, LightBuffer, LightOrder, View};
+use assign::{Assignment, EncoderPasses, Everything, Light, LightBuffer, LightOrder, View};
 use assign_cdi::{Build, DeepImageSettings, DeepImages, Directions, Spread, Storage};
 use glam::Vec3;
 use shading::{
-    HdrImage, OccluderDepth, Renderer, ShadingError, ShadowModel, WorldTriangles, shadow_images,
-    traced::Transport,
+    HdrImage, Lighting, LightingOptions, Mode, OccluderDepth, Renderer, ShadingError, ShadowModel,
+    WorldTriangles, shadow_images, traced::Transport,
 };
 
 use crate::{
@@ -146,6 +146,24 @@ fn rays_are_refused_without_finished_images_of_the_scene() {
     let moved = LightBuffer::new(&gpu, &[lamp(Vec3::new(0.1, 3.0, 0.0))]).unwrap();
     let error = renderer.prepare(&view, &moved).unwrap_err();
     assert!(matches!(error, ShadingError::StaleShadows), "{error}");
+    let error = renderer.move_shadows(&moved).unwrap_err().to_string();
+    assert!(error.contains("shadow model cdi:16 cannot serve lights that move"), "{error}");
+    // A pass reads the points and the images for which it was created.
+    let mut strategy = Everything::new(&gpu).unwrap();
+    let options =
+        LightingOptions { kinds: lights.kinds(), shadows: rays(16), ..LightingOptions::default() };
+    let lighting = Lighting::new(&renderer, &strategy, Mode::Deferred, options).unwrap();
+    let mut record = |renderer: &Renderer, lights: &LightBuffer| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        strategy.prepare(&gpu, &renderer.frame(&view, lights)).unwrap();
+        let mut passes = EncoderPasses { encoder: &mut encoder };
+        lighting.record(renderer, &view, &strategy, &mut passes)
+    };
+    renderer.prepare(&view, &lights).unwrap();
+    assert!(record(&renderer, &lights).is_ok());
+    renderer.cast_shadows(&moved, rays(16)).unwrap();
+    renderer.prepare(&view, &moved).unwrap();
+    assert!(matches!(record(&renderer, &moved), Err(ShadingError::StaleShadows)));
     // Only maps say what hides lights from groups.
     let error = renderer.find_occluders(OccluderDepth::Farthest).unwrap_err().to_string();
     assert!(error.starts_with("shadow model is cdi:16: it must be a model with maps"), "{error}");

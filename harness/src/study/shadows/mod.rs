@@ -31,7 +31,9 @@ pub(crate) const STUDY: Study = Study {
     answers: "How far shadow maps of area lights are from the truth, by their number, size and filter, and by the lights in one atlas",
     scenes: atrium,
     jobs: all_jobs,
-    motion: TakesMotion::None("its times of moving lights are sums of the times of drawing and shading"),
+    motion: TakesMotion::None(
+        "its times of moving lights are sums of the times of drawing and shading",
+    ),
     after_run: |done| compare_with_truths(done, &jobs::AGAINST, TruthOf::Alike(jobs::ALIKE)),
     headline: page::headline,
     findings: page::findings,

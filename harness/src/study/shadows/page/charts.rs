@@ -94,7 +94,10 @@ pub(crate) fn name(entry: &Entry<'_>) -> String {
         let px = number(f64::from(px));
         return format!("{lights}, {count} through {images} images of {px}\u{b2}");
     }
-    let Some(maps) = maps(record) else { return format!("{lights}, no shadows") };
+    let Some(maps) = maps(record) else {
+        let model = record.setting.shadows.as_ref().map(|shadows| shadows.model.as_str());
+        return format!("{lights}, {}", model.unwrap_or("no shadows"));
+    };
     let count = if maps.maps == 1 { "1 map".to_owned() } else { format!("{} maps", maps.maps) };
     let taps = if maps.taps == 1 { String::new() } else { format!(", {} taps", maps.taps) };
     format!("{lights}, {count} of {}\u{b2}{taps}", number(f64::from(maps.px)))

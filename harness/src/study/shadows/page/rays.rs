@@ -3,6 +3,7 @@
 use super::charts::{Sweep, name, swept};
 use crate::report::format::{difference, significant};
 use crate::results::Record;
+use crate::study::claims::order::Order;
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::Charts;
@@ -62,12 +63,18 @@ pub(super) fn finding(done: &Done, scene: &str) -> Option<String> {
     }
     let ms = shade_ms(entry.record)?;
     told += &format!(" The rays take {} ms to shade", significant(ms));
-    let is_fast = |entry: &Entry<'_>| shade_ms(entry.record).is_some_and(|other| other <= ms);
+    if !every_map.iter().filter(|entry| is_map(entry)).any(|entry| shade_ms(entry.record).is_some())
+    {
+        return Some(told + ".");
+    }
+    let is_fast = |entry: &Entry<'_>| {
+        shade_ms(entry.record).is_some_and(|other| Order::of_figures(other, ms) != Order::More)
+    };
     let faster = every_map.iter().copied().filter(is_map).filter(is_fast);
     told += &match best(faster) {
-        None => ", less than any maps that were measured.".to_owned(),
+        None => ", less than all maps that were measured.".to_owned(),
         Some((other, flip)) => format!(
-            ". Of the maps that take no longer, {} have the least FLIP, {}.",
+            ". Of the maps that take at most 5 % longer, {} have the least FLIP, {}.",
             name(&other),
             difference(flip)
         ),
