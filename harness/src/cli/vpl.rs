@@ -100,7 +100,7 @@ pub struct DeepArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(4, 1024), help_heading = DEEP, hide_short_help = true)]
     pub deep_size: Option<u32>,
 
-    /// Surface samples along each side of a pixel of the deep images, 1 (the paper's) to 8
+    /// Surface samples along a side of a pixel of deep images, 1 (the paper's) to 8
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 8), help_heading = DEEP, hide_short_help = true)]
     pub oversampling: u32,
 
