@@ -51,9 +51,8 @@ impl Bench {
         let bounce = args.bounce.is_on();
         // Only scenarios depend on the seed.
         let seed = args.scene.starts_with(PREFIX).then_some(args.seed);
-        let key =
-            format!("{} {} {} {bounce} {seed:?}", args.scene, args.scene_scale, args.replicate);
-        let key = format!("{key} {:?}", args.roughness);
+        let StageArgs { scene, scene_scale, replicate, roughness, .. } = args;
+        let key = format!("{scene} {scene_scale} {replicate} {roughness:?} {bounce} {seed:?}");
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 // The maps are those of other lights.

@@ -100,7 +100,8 @@ pub(crate) fn error(record: &Record, metric: &str) -> Option<f64> {
     finite(&record.image.truth_errors, metric)
 }
 
-fn finite(errors: &Errors, metric: &str) -> Option<f64> {
+/// An error without its sign; `None` where it was not measured.
+pub(crate) fn finite(errors: &Errors, metric: &str) -> Option<f64> {
     let error = errors.get(metric).copied().flatten().map(f64::abs);
     error.filter(|error| error.is_finite())
 }

@@ -167,25 +167,9 @@ fn side_that_fits(atlas_px: u32, lights: u32, maps: u32) -> Option<u32> {
 }
 
 /// A camera on its way to the light, and its distance from it, metres.
-struct Stop {
-    camera: String,
-    distance_m: f64,
-}
-
-/// The jobs of one scene.
-///
-/// # Errors
-///
-/// Names what is wrong with the scene: a scene that cannot be opened shows before anything is written.
-pub(crate) fn jobs(
-    bench: &mut Bench,
-    args: &StudyArgs,
-    scene: &StudyScene,
-) -> Result<Vec<Job>, HarnessError> {
-    let ([core, _], _) = scene.boxes(bench)?;
-    let range_m = core.diagonal() * RANGE_SHARE;
-    let stops = stops(bench, args, scene, range_m)?;
-    Ok(plan(args, scene, range_m, &stops))
+pub(super) struct Stop {
+    pub(super) camera: String,
+    pub(super) distance_m: f64,
 }
 
 /// How much the study looks at.
@@ -194,7 +178,7 @@ pub(crate) fn extent_of(args: &StudyArgs) -> &'static Extent {
 }
 
 /// The cameras that approach the only light of [`APPROACH`], the farthest first.
-fn stops(
+pub(super) fn stops(
     bench: &mut Bench,
     args: &StudyArgs,
     scene: &StudyScene,
@@ -222,8 +206,13 @@ fn stops(
     Ok(APPROACHED.map(stop).into())
 }
 
+/// The options of all sections whose lights are alike: scene, size and lights.
+pub(super) fn lit(args: &StudyArgs, scene: &StudyScene, size: Size, range_m: f32) -> Vec<String> {
+    [scene.options(args.size.unwrap_or(size), args.seed), alike(range_m)].concat()
+}
+
 /// The options of the lights: rectangles with equal ranges.
-pub(super) fn alike(range_m: f32) -> Vec<String> {
+fn alike(range_m: f32) -> Vec<String> {
     // All digits: in a scene of millimetres, a rounded range would differ.
     let range = range_m.clamp(1e-6, 1e6).to_string();
     let alike = ["--radii", "equal", "--radius-scale", &range];
@@ -231,13 +220,10 @@ pub(super) fn alike(range_m: f32) -> Vec<String> {
     alike.into_iter().chain(lit).map(str::to_owned).collect()
 }
 
-fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> Vec<Job> {
+/// The jobs of one scene.
+pub(super) fn jobs(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> Vec<Job> {
     let extent = extent_of(args);
-    let lit = |size| {
-        let drawn = scene.options(args.size.unwrap_or(size), args.seed);
-        [drawn, alike(range_m)].concat()
-    };
-    let (many, lit) = (lit(extent.lights_size), lit(extent.size));
+    let [many, lit] = [extent.lights_size, extent.size].map(|size| lit(args, scene, size, range_m));
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let many: Vec<&str> = many.iter().map(String::as_str).collect();
     let few = FEW.to_string();
@@ -313,38 +299,6 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32, stops: &[Stop]) -> V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::parse;
-
-    fn jobs(line: &str) -> Vec<Job> {
-        let words = ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
-        let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
-        let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
-        let scenes = StudyScene::all(&args).expect("scenes");
-        let stops = [Stop { camera: "-1.5,2,0:0,1,0.25".into(), distance_m: 3.5 }];
-        scenes.iter().flat_map(|scene| plan(&args, scene, 10.0, &stops)).collect()
-    }
-
-    #[test]
-    fn every_job_is_a_command_and_every_image_has_a_truth_of_as_many_lights() {
-        for line in ["", "--quick"] {
-            let jobs = jobs(line);
-            for job in &jobs {
-                assert!(parse(&job.command).is_ok(), "{:?}", job.command);
-                let Some((_, truth)) = AGAINST.iter().find(|(section, _)| *section == job.section)
-                else {
-                    continue;
-                };
-                let alike = |other: &Job| {
-                    ALIKE.iter().all(|option| other.option(option) == job.option(option))
-                };
-                let truths = jobs.iter().filter(|other| other.section == *truth);
-                assert_eq!(truths.filter(|other| alike(other)).count(), 1, "{}", job.name);
-            }
-            for section in COMPARED.into_iter().chain([APPROACH]) {
-                assert!(jobs.iter().any(|job| job.section == section), "{line}: {section}");
-            }
-        }
-    }
 
     #[test]
     fn maps_fill_their_atlas_and_do_not_exceed_it() {

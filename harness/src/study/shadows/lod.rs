@@ -3,17 +3,16 @@
 //! The lights cast no shadows, so that errors come from the points alone, beside those of the pipeline.
 
 use super::cells::{METRIC, error, on_software};
-use super::jobs::{LOD, LOD_TRUTH, RANGE_SHARE, alike, extent_of};
+use super::jobs::{LOD, LOD_TRUTH, extent_of, lit};
+use super::page::charts::{against_truth, dashed};
 use crate::{
-    bench::Bench,
-    chart::{Axis, Marks, Point, Scale, Series, XyChart},
+    chart::{Axis, Marks, Point, Scale, Series},
     cli::StudyArgs,
-    error::HarnessError,
     image_errors::ERROR_METRICS,
     report::{
         column::Column,
         format::{difference, significant},
-        markup::{Html, html},
+        markup::Html,
         table::{Look, Row, Table},
     },
     results::{Errors, Record},
@@ -28,26 +27,17 @@ use crate::{
     },
 };
 
-/// Lights, and the solid angles below which they become points, steradians: in full and quick.
-const LIT: [(&str, &[&str]); 2] =
-    [("16", &["0.003", "0.01", "0.03", "0.1", "0.3", "1"]), ("16", &["0.01", "0.3"])];
+/// The number of lights.
+const LIGHTS: &str = "16";
+
+/// The solid angles below which they become points, steradians: in full and quick.
+const ANGLES: [&[&str]; 2] = [&["0.003", "0.01", "0.03", "0.1", "0.3", "1"], &["0.01", "0.3"]];
 
 /// The jobs of a scene: the truth, all lights with their outlines, and each solid angle.
-pub(crate) fn jobs(
-    bench: &mut Bench,
-    args: &StudyArgs,
-    scene: &StudyScene,
-) -> Result<Vec<Job>, HarnessError> {
-    let ([core, _], _) = scene.boxes(bench)?;
-    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
-}
-
-fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
+pub(crate) fn jobs(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
     let study = extent_of(args);
-    let (lights, angles) = LIT[usize::from(args.quick)];
-    let drawn = scene.options(args.size.unwrap_or(study.lights_size), args.seed);
-    let drawn = [drawn, alike(range_m)].concat();
-    let drawn: Vec<&str> = drawn.iter().map(String::as_str).chain(["--lights", lights]).collect();
+    let drawn = lit(args, scene, study.lights_size, range_m);
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).chain(["--lights", LIGHTS]).collect();
     let truth = [&["truth"], &drawn[..], &["--samples", study.lights_samples]].concat();
     let timed = ["--frames", study.frames, "--warmup", study.warmup, "--truth", "none"];
     let compare = |variant: &str, more: &[&str]| {
@@ -55,6 +45,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
         Job::new(scene, LOD, variant, &words)
     };
     let mut jobs = vec![Job::new(scene, LOD_TRUTH, "", &truth), compare("off", &[])];
+    let angles = ANGLES[usize::from(args.quick)];
     jobs.extend(angles.iter().map(|angle| compare(angle, &["--area-lod", angle])));
     jobs
 }
@@ -94,23 +85,14 @@ fn chart(scene: &str, all: &[Entry<'_>], charts: &mut Charts) -> Html {
     if points.is_empty() {
         return Html::default();
     }
-    let ends = [points.first(), points.last()].map(|point| point.map(|point| point.x));
     let mut series =
         vec![Series::new("points below the angle", "series-0", Marks::LineAndPoints, points)];
     if let Some(floor) = whole(all).and_then(|record| error(record, metric.id)) {
-        let tip = format!("all outlines\n{} {}", metric.head, difference(floor));
-        let ends = ends.into_iter().flatten().map(|x| Point::new(x, floor, tip.clone()));
-        series.push(Series::new("all outlines", "", Marks::Dashed, ends.collect()));
+        series.push(dashed("all outlines", floor, metric, &series));
     }
-    let axes = [
-        Axis::new("A light is a point below", "sr", Scale::Log),
-        Axis::new(format!("{} against the truth", metric.head), metric.unit, Scale::Log),
-    ];
-    let title = format!("Error of far area lights as points: {}", metric.head);
-    let mut body =
-        charts.xy(&format!("{scene}-{LOD}-{}", metric.id), &XyChart::new(title, axes, series));
-    body += html!("<p class=\"note\">{}</p>\n", metric.about);
-    body
+    let place = Axis::new("A light is a point below", "sr", Scale::Log);
+    let title = "Error of far area lights as points";
+    against_truth(charts, &format!("{scene}-{LOD}"), title, metric, place, series)
 }
 
 fn table(all: &[Entry<'_>]) -> Html {
@@ -165,34 +147,4 @@ pub(crate) fn finding(done: &Done, scene: &str) -> Option<String> {
         significant(angle),
         difference(error(record, METRIC)?)
     ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cli::{Invocation, parse};
-    use crate::study::shadows::jobs::ALIKE;
-
-    #[test]
-    fn every_job_is_a_command_and_every_image_has_a_truth() {
-        for (line, count) in [("", 8), ("--quick", 4)] {
-            let words =
-                ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
-            let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
-            let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
-            let scenes = StudyScene::all(&args).expect("scenes");
-            let jobs = plan(&args, &scenes[0], 10.0);
-            assert_eq!(jobs.len(), count);
-            let (images, truths) = (LOD, LOD_TRUTH);
-            for job in &jobs {
-                assert!(parse(&job.command).is_ok(), "{:?}", job.command);
-                let alike = |other: &&Job| {
-                    other.section == truths
-                        && ALIKE.iter().all(|option| other.option(option) == job.option(option))
-                };
-                let count = jobs.iter().filter(alike).count();
-                assert!(job.section != images || count == 1, "{}", job.name);
-            }
-        }
-    }
 }

@@ -2,11 +2,9 @@
 
 use shading::{MAP_COUNTS, ShadowModel};
 
-use super::jobs::{FEW, RANGE_SHARE, RAYS, alike, extent_of};
+use super::jobs::{FEW, RAYS, extent_of, lit};
 use crate::{
-    bench::Bench,
     cli::StudyArgs,
-    error::HarnessError,
     strategy::BASELINE,
     study::{job::Job, scene::StudyScene},
 };
@@ -27,20 +25,10 @@ const FULL: Extent =
 const QUICK: Extent = Extent { rays: &[1, 9], images: &[("4x4", "32")], map_px: 64 };
 
 /// The jobs of a scene.
-pub(crate) fn jobs(
-    bench: &mut Bench,
-    args: &StudyArgs,
-    scene: &StudyScene,
-) -> Result<Vec<Job>, HarnessError> {
-    let ([core, _], _) = scene.boxes(bench)?;
-    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
-}
-
-fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
+pub(crate) fn jobs(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
     let extent = if args.quick { &QUICK } else { &FULL };
     let study = extent_of(args);
-    let drawn = scene.options(args.size.unwrap_or(study.size), args.seed);
-    let lit = [drawn, alike(range_m)].concat();
+    let lit = lit(args, scene, study.size, range_m);
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let few = FEW.to_string();
     let job = |variant: &str, model: ShadowModel, more: &[&str]| {
@@ -62,30 +50,4 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
         }
     }
     jobs
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cli::{Invocation, parse};
-
-    #[test]
-    fn every_job_is_a_command_that_is_not_refused() {
-        for (line, count) in [("", 14), ("--quick", 4)] {
-            let words =
-                ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
-            let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
-            let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
-            let scenes = StudyScene::all(&args).expect("scenes");
-            let jobs = plan(&args, &scenes[0], 10.0);
-            assert_eq!(jobs.len(), count);
-            for job in jobs {
-                let Ok(Invocation::Compare(compare)) = parse(&job.command) else {
-                    panic!("{:?}", job.command)
-                };
-                let choices = compare.choices().expect("strategies");
-                crate::checks::check_options(&compare, &choices).expect("accepted");
-            }
-        }
-    }
 }

@@ -4,17 +4,16 @@
 //! highlight shows, and the less their visibility has to do with that of the whole emitter. Each pair of truth images has
 //! one roughness on all surfaces.
 
-use super::cells::METRIC;
-use super::jobs::{FEW, RANGE_SHARE, SEPARATED_BY, TRUTH_BY, alike, extent_of};
+use super::cells::{METRIC, finite};
+use super::jobs::{FEW, SEPARATED_BY, TRUTH_BY, extent_of, lit};
+use super::page::charts::against_truth;
 use crate::{
-    bench::Bench,
-    chart::{Axis, Marks, Point, Scale, Series, XyChart},
+    chart::{Axis, Marks, Point, Scale, Series},
     cli::StudyArgs,
-    error::HarnessError,
     image_errors::ERROR_METRICS,
     report::{
         format::{difference, significant},
-        markup::{Html, html},
+        markup::Html,
         table::{Look, Row, Table},
     },
     results::{Errors, TruthImage},
@@ -33,19 +32,9 @@ const ROUGHNESS: &str = "roughness";
 const ROUGHNESSES: [&[&str]; 2] = [&["0.1", "0.2", "0.4", "0.7", "1"], &["0.2", "1"]];
 
 /// The jobs of a scene: T and P of each roughness.
-pub(crate) fn jobs(
-    bench: &mut Bench,
-    args: &StudyArgs,
-    scene: &StudyScene,
-) -> Result<Vec<Job>, HarnessError> {
-    let ([core, _], _) = scene.boxes(bench)?;
-    Ok(plan(args, scene, core.diagonal() * RANGE_SHARE))
-}
-
-fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
+pub(crate) fn jobs(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
     let study = extent_of(args);
-    let drawn = scene.options(args.size.unwrap_or(study.lights_size), args.seed);
-    let lit = [drawn, alike(range_m)].concat();
+    let lit = lit(args, scene, study.lights_size, range_m);
     let lit: Vec<&str> = lit.iter().map(String::as_str).collect();
     let few = FEW.to_string();
     let truth = |section: &str, roughness: &str, more: &[&str]| {
@@ -60,8 +49,8 @@ fn plan(args: &StudyArgs, scene: &StudyScene, range_m: f32) -> Vec<Job> {
 }
 
 const NOTE: &str = "P has the exact visible share of each light, times its exact light without shadows. T is the truth. All \
-     surfaces have one roughness and are no metal. No model of visible shares has a smaller error than P, but for what its \
-     own errors happen to make up for.";
+     surfaces have one roughness and are no metal. A model of visible shares is closer to T than P only where \
+     its own errors happen to cancel those of P.";
 
 /// The errors of P by roughness, ascending.
 fn errors<'a>(done: &'a Done, scene: &'a str) -> Vec<(f64, &'a TruthImage)> {
@@ -73,10 +62,6 @@ fn errors<'a>(done: &'a Done, scene: &'a str) -> Vec<(f64, &'a TruthImage)> {
     let mut all: Vec<(f64, &TruthImage)> = known.collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     all
-}
-
-fn error(image: &TruthImage, metric: &str) -> Option<f64> {
-    image.against_errors.get(metric).copied().flatten().map(f64::abs)
 }
 
 /// The part of a scene's page; empty without errors.
@@ -95,24 +80,16 @@ fn chart(scene: &str, all: &[(f64, &TruthImage)], charts: &mut Charts) -> Html {
         return Html::default();
     };
     let point = |(roughness, image): &(f64, &TruthImage)| {
-        let error = error(image, metric.id)?;
+        let error = finite(&image.against_errors, metric.id)?;
         let tip =
             format!("roughness {}\n{} {}", significant(*roughness), metric.head, difference(error));
         Some(Point::new(*roughness, error, tip))
     };
     let points: Vec<Point> = all.iter().filter_map(point).collect();
     let series = Series::new("P, exact shares", "series-0", Marks::LineAndPoints, points);
-    let axes = [
-        Axis::new("Roughness of all surfaces", "", Scale::Log),
-        Axis::new(format!("{} against the truth", metric.head), metric.unit, Scale::Log),
-    ];
-    let title = format!("Error of exact visible shares by roughness: {}", metric.head);
-    let mut body = charts.xy(
-        &format!("{scene}-{SEPARATED_BY}-{}", metric.id),
-        &XyChart::new(title, axes, vec![series]),
-    );
-    body += html!("<p class=\"note\">{}</p>\n", metric.about);
-    body
+    let place = Axis::new("Roughness of all surfaces", "", Scale::Log);
+    let title = "Error of exact visible shares by roughness";
+    against_truth(charts, &format!("{scene}-{SEPARATED_BY}"), title, metric, place, vec![series])
 }
 
 fn table(all: &[(f64, &TruthImage)]) -> Html {
@@ -136,39 +113,9 @@ pub(crate) fn finding(done: &Done, scene: &str) -> Option<String> {
     Some(format!(
         "In {scene}, exact visible shares (P) have a FLIP of {} where all surfaces have roughness {}, and of {} at \
          roughness {}.",
-        difference(error(first.1, METRIC)?),
+        difference(finite(&first.1.against_errors, METRIC)?),
         significant(first.0),
-        difference(error(last.1, METRIC)?),
+        difference(finite(&last.1.against_errors, METRIC)?),
         significant(last.0)
     ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cli::{Invocation, parse};
-    use crate::study::shadows::jobs::ALIKE;
-
-    #[test]
-    fn every_job_is_a_command_and_every_image_has_a_truth() {
-        for (line, count) in [("", 10), ("--quick", 4)] {
-            let words =
-                ["lightbench", "study", "shadows"].into_iter().chain(line.split_whitespace());
-            let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
-            let args = args.with_scenes(|_| vec!["atrium".to_owned()]);
-            let scenes = StudyScene::all(&args).expect("scenes");
-            let jobs = plan(&args, &scenes[0], 10.0);
-            assert_eq!(jobs.len(), count);
-            let (images, truths) = (SEPARATED_BY, TRUTH_BY);
-            for job in &jobs {
-                assert!(parse(&job.command).is_ok(), "{:?}", job.command);
-                let alike = |other: &&Job| {
-                    other.section == truths
-                        && ALIKE.iter().all(|option| other.option(option) == job.option(option))
-                };
-                let count = jobs.iter().filter(alike).count();
-                assert!(job.section != images || count == 1, "{}", job.name);
-            }
-        }
-    }
 }

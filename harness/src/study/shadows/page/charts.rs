@@ -2,7 +2,7 @@
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::grouping::grouped_by;
-use crate::image_errors::ERROR_METRICS;
+use crate::image_errors::{ERROR_METRICS, ErrorMetric};
 use crate::report::format::{difference, number};
 use crate::report::markup::{Html, html};
 use crate::study::data::{Entry, entries};
@@ -46,8 +46,6 @@ pub(crate) fn swept(done: &Done, scene: &str, sweep: &Sweep, charts: &mut Charts
         if lines.is_empty() {
             continue;
         }
-        let places: Vec<f64> =
-            lines.iter().flat_map(|(_, points)| points.iter().map(|point| point.x)).collect();
         let mut series: Vec<Series> = lines
             .into_iter()
             .enumerate()
@@ -56,25 +54,41 @@ pub(crate) fn swept(done: &Done, scene: &str, sweep: &Sweep, charts: &mut Charts
                 Series::new(name, format!("series-{ix}"), Marks::LineAndPoints, points)
             })
             .collect();
-        let floor = floor_of(done, scene, metric.id).filter(|_| sweep.has_floor);
-        if let Some(floor) = floor {
-            let tip = format!("P, exact shares\n{} {}", metric.head, difference(floor));
-            let ends = [f64::min, f64::max].map(|end| places.iter().copied().reduce(end));
-            let ends = ends.into_iter().flatten().map(|x| Point::new(x, floor, tip.clone()));
-            series.push(Series::new("P, exact shares", "", Marks::Dashed, ends.collect()));
+        if let Some(floor) = floor_of(done, scene, metric.id).filter(|_| sweep.has_floor) {
+            series.push(dashed("P, exact shares", floor, metric, &series));
         }
         let (label, unit) = sweep.axis;
-        let axes = [
-            Axis::new(label, unit, Scale::Log),
-            Axis::new(format!("{} against the truth", metric.head), metric.unit, Scale::Log),
-        ];
-        let title = format!("{}: {}", sweep.title, metric.head);
-        let slug = format!("{scene}-{}-{}", sweep.section, metric.id);
-        let mut body = charts.xy(&slug, &XyChart::new(title, axes, series));
-        body += html!("<p class=\"note\">{}</p>\n", metric.about);
+        let place = Axis::new(label, unit, Scale::Log);
+        let slug = format!("{scene}-{}", sweep.section);
+        let body = against_truth(charts, &slug, sweep.title, metric, place, series);
         shown.push((metric.head.to_owned(), body));
     }
     panels("Metric of error", &shown)
+}
+
+/// A dashed line at one error, from the least to the greatest place of other lines.
+pub(crate) fn dashed(name: &str, error: f64, metric: &ErrorMetric, others: &[Series]) -> Series {
+    let tip = format!("{name}\n{} {}", metric.head, difference(error));
+    let places = || others.iter().flat_map(|series| series.points.iter().map(|point| point.x));
+    let ends = [f64::min, f64::max].map(|end| places().reduce(end));
+    let points = ends.into_iter().flatten().map(|x| Point::new(x, error, tip.clone()));
+    Series::new(name, "", Marks::Dashed, points.collect())
+}
+
+/// A chart of errors against the truth, with what the metric means.
+pub(crate) fn against_truth(
+    charts: &mut Charts,
+    slug: &str,
+    title: &str,
+    metric: &ErrorMetric,
+    place: Axis,
+    series: Vec<Series>,
+) -> Html {
+    let error = Axis::new(format!("{} against the truth", metric.head), metric.unit, Scale::Log);
+    let chart = XyChart::new(format!("{title}: {}", metric.head), [place, error], series);
+    let mut body = charts.xy(&format!("{slug}-{}", metric.id), &chart);
+    body += html!("<p class=\"note\">{}</p>\n", metric.about);
+    body
 }
 
 /// `4 lights, 25 maps of 112\u{b2}, 9 taps`: the name of a record.

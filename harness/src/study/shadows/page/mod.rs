@@ -1,7 +1,7 @@
 //! The page of shadow maps: errors by the number of maps, their size, their filter and the lights in one atlas.
 
 mod approach;
-mod charts;
+pub(crate) mod charts;
 mod pictures;
 mod rays;
 mod table;
