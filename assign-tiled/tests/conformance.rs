@@ -76,16 +76,19 @@ fn explicit_tiles_conform_in_front_of_surfaces() {
     }
 }
 
+/// Tiles whose depths are known before they are culled: all but T-E1.
+const BEFORE_CULLING: [TileDepths; 5] = [
+    TileDepths::Implicit,
+    TileDepths::Explicit,
+    TileDepths::HalfZ,
+    TileDepths::ModifiedHalfZ,
+    TileDepths::Sliced,
+];
+
 /// No buffer keeps the ranges of T-E1, so its look-ups cannot ask whether they hold a sample.
 #[test]
 fn look_ups_that_no_frame_stated_lose_no_light() {
-    for depths in [
-        TileDepths::Implicit,
-        TileDepths::Explicit,
-        TileDepths::HalfZ,
-        TileDepths::ModifiedHalfZ,
-        TileDepths::Sliced,
-    ] {
+    for depths in BEFORE_CULLING {
         let make = tiled(depths, "16x16", CullSettings::default());
         conformance::run_unstated(&make).expect("conforms");
     }
@@ -160,13 +163,7 @@ fn lists_are_short() {
 
 #[test]
 fn faults_are_rejected() {
-    for depths in [
-        TileDepths::Implicit,
-        TileDepths::Explicit,
-        TileDepths::HalfZ,
-        TileDepths::ModifiedHalfZ,
-        TileDepths::Sliced,
-    ] {
+    for depths in BEFORE_CULLING {
         let make = tiled(depths, "16x16", CullSettings::default());
         assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
     }

@@ -51,8 +51,20 @@ fn draw(
     mode: Mode,
     shadows: ShadowModel,
 ) -> HdrImage {
-    let gpu = renderer.gpu();
     let options = LightingOptions { kinds: lights.kinds(), shadows, ..LightingOptions::default() };
+    draw_with(renderer, view, lights, strategy, mode, options)
+}
+
+/// The same with any options.
+fn draw_with(
+    renderer: &Renderer,
+    view: &View,
+    lights: &LightBuffer,
+    strategy: &mut dyn Assignment,
+    mode: Mode,
+    options: LightingOptions,
+) -> HdrImage {
+    let gpu = renderer.gpu();
     let lighting = Lighting::new(renderer, strategy, mode, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
